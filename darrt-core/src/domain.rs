@@ -1,0 +1,49 @@
+//! M: the combined configuration space of the robot and the movable objects (paper section 3).
+
+use std::borrow::Cow;
+use std::fmt::Debug;
+
+use crate::space::ComponentSpace;
+use crate::state::{ComponentId, ObjectConfig, ObjectId, RobotConfig};
+
+/// The combined space M and the static facts that a primitive may read; never B, the obstacles.
+///
+/// Several robots are one [`Product`](crate::space::Product) space; objects of different kinds are one
+/// enum space.
+///
+/// # Laws
+/// `reach` and `hop` are finite and non-negative.
+///
+/// # Example
+/// See [`testing::puck`](crate::testing::puck) (feature `testing`), a disc that pushes and carries pucks.
+pub trait Domain: Sized + Send + Sync + 'static {
+    /// Space of the robot R.
+    type Robot: ComponentSpace;
+    /// Space of each movable object.
+    type Object: ComponentSpace;
+    /// What is held, what rests on what: carried along by motions, never sampled.
+    type Mode: Clone + PartialEq + Debug + Send + Sync;
+    /// What an instance may touch, and why. Opaque to the planner; read by the validity check.
+    type Contacts: Clone + Default + PartialEq + Debug + Send + Sync;
+
+    /// The robot's space.
+    fn robot(&self) -> &Self::Robot;
+
+    /// The objects' spaces, in the order of their ids.
+    fn objects(&self) -> &[Self::Object];
+
+    /// Name of a component, for people.
+    fn component_name(&self, component: ComponentId) -> Cow<'_, str> {
+        match component {
+            ComponentId::Robot => Cow::Borrowed("robot"),
+            ComponentId::Object(id) => Cow::Owned(format!("object {}", id.index())),
+        }
+    }
+
+    /// Metres the robot's working point must travel from `robot` until it can act on `object` at `at`,
+    /// obstacles ignored. Used by the tour distances of paper section 4.3.
+    fn reach(&self, robot: &RobotConfig<Self>, object: ObjectId, at: &ObjectConfig<Self>) -> f64;
+
+    /// Metres the working point travels from acting on one object to acting on another.
+    fn hop(&self, from: (ObjectId, &ObjectConfig<Self>), to: (ObjectId, &ObjectConfig<Self>)) -> f64;
+}

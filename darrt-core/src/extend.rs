@@ -1,0 +1,131 @@
+//! `EXTENDTOWARDS(c1, c2, M, B, A)`: PATH, discretised and checked; the valid prefix is kept with every
+//! intermediate state.
+
+use std::sync::Arc;
+
+use rand::Rng;
+use smallvec::SmallVec;
+
+use crate::domain::Domain;
+use crate::motion::Instance;
+use crate::observe::accounts::Bucket;
+use crate::partial::PartialState;
+use crate::path::{Path, PathEnd, Trial, path};
+use crate::problem::Problem;
+use crate::state::State;
+use crate::validity::{Blame, BlockKind};
+
+/// How an extension is discretised and bounded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExtendOptions {
+    /// Metres of travel between two neighbouring nodes of the tree; positive. Collisions are judged by
+    /// [`Validity`](crate::validity::Validity) at its own, finer resolution.
+    pub spacing_m: f64,
+    /// At most this many primitives in one PATH (the authors' software used 100).
+    pub max_depth: usize,
+}
+
+impl Default for ExtendOptions {
+    fn default() -> Self {
+        Self { spacing_m: 0.1, max_depth: 20 }
+    }
+}
+
+/// One reached state on the way: where on which instance.
+#[derive(Debug)]
+pub struct Reached<D: Domain> {
+    /// The state.
+    pub state: State<D>,
+    /// The instance it lies on.
+    pub instance: Arc<Instance<D>>,
+    /// Its parameter there, in `(0, 1]`.
+    pub t: f64,
+    /// Index of the primitive that propagated the instance.
+    pub primitive: u16,
+}
+
+/// What one extension achieved, and why it ended.
+#[derive(Debug)]
+pub struct Extension<D: Domain> {
+    /// The valid prefix, in order; empty if the first step is blocked.
+    pub reached: Vec<Reached<D>>,
+    /// Did it meet the target?
+    pub is_met: bool,
+    /// What blocked it, if anything did.
+    pub blame: Option<Blame>,
+    /// One bucket per primitive, in the order of the problem.
+    pub buckets: SmallVec<[Bucket; 8]>,
+}
+
+/// Extends `from` towards `to`. Pure but for `rng`.
+pub fn extend_towards<D: Domain>(
+    problem: &Problem<D>,
+    options: &ExtendOptions,
+    from: &State<D>,
+    to: &PartialState<D>,
+    rng: &mut dyn Rng,
+) -> Extension<D> {
+    let m = problem.domain();
+    let e = path(m, problem.primitives(), from, to, options.max_depth, rng);
+    let mut reached = Vec::new();
+    let mut blocked: Option<(usize, Blame)> = None;
+    for (index, ((primitive, instance), start)) in e.instances.iter().zip(&e.states).enumerate() {
+        let free = problem.validity().free_prefix(m, instance, start);
+        discretise(m, instance, *primitive, free.fraction, options.spacing_m, start, &mut reached);
+        if let Some(blame) = free.blame {
+            blocked = Some((index, blame));
+            break;
+        }
+    }
+    let buckets = buckets(&e, blocked.as_ref().map(|(index, blame)| (*index, blame.kind)));
+    Extension { reached, is_met: blocked.is_none() && e.end == PathEnd::Met, blame: blocked.map(|(_, b)| b), buckets }
+}
+
+/// Appends the states of one instance at equal spacing up to `fraction`, the last one exactly there.
+fn discretise<D: Domain>(
+    m: &D,
+    instance: &Arc<Instance<D>>,
+    primitive: u16,
+    fraction: f64,
+    spacing_m: f64,
+    start: &State<D>,
+    reached: &mut Vec<Reached<D>>,
+) {
+    if fraction <= 0.0 {
+        return;
+    }
+    let steps = (instance.motion.length() * fraction / spacing_m).ceil().clamp(1.0, 10_000.0);
+    let mut i = 1.0;
+    while i <= steps {
+        let t = if i >= steps { fraction } else { fraction * i / steps };
+        reached.push(Reached { state: instance.at(m, t, start), instance: Arc::clone(instance), t, primitive });
+        i += 1.0;
+    }
+}
+
+/// The one bucket of every primitive: the furthest it got in this extension.
+fn buckets<D: Domain>(e: &Path<D>, blocked: Option<(usize, BlockKind)>) -> SmallVec<[Bucket; 8]> {
+    let mut buckets: SmallVec<[Bucket; 8]> =
+        e.useful.iter().map(|useful| if *useful { Bucket::NotChosen } else { Bucket::NotUseful }).collect();
+    for (primitive, trial) in &e.trials {
+        let bucket = match *trial {
+            Trial::Infeasible(why) => Bucket::from(why),
+            Trial::NoProgress => Bucket::NoProgress,
+            Trial::Propagated { first, last } => match blocked {
+                Some((at, _)) if at < first => Bucket::Behind,
+                Some((at, kind)) if at < last => Bucket::from(kind),
+                _ => Bucket::Accepted,
+            },
+        };
+        if let Some(slot) = buckets.get_mut(usize::from(*primitive)) {
+            *slot = (*slot).max(bucket);
+        }
+    }
+    if e.end == PathEnd::Depth
+        && let Some((primitive, _)) = e.trials.last()
+        && let Some(slot) = buckets.get_mut(usize::from(*primitive))
+    {
+        *slot = Bucket::Depth;
+    }
+    buckets
+}

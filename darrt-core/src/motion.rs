@@ -1,0 +1,54 @@
+//! What a primitive instance does over time: a pure function of `t` in `[0, 1]`.
+
+use std::fmt::Debug;
+
+use crate::domain::Domain;
+use crate::state::{ComponentSet, ObjectId, State};
+
+pub mod straight;
+pub mod waypoints;
+
+pub use straight::Straight;
+pub use waypoints::Waypoints;
+
+/// One motion of the combined system.
+///
+/// # Laws
+/// - Pure: the same `t` gives the same state, bit for bit, and whatever `out` held before does not matter.
+/// - At `t = 0` it is the state it was propagated from, at `t = 1` the state it leads to; the mode changes
+///   only at these ends: it is constant over the open interval.
+/// - No point of any component moves farther than `length() * |t2 - t1|` between `t1` and `t2`. This is
+///   what lets a validity check prove that a motion is free between two samples.
+pub trait Motion<D: Domain>: Send + Sync + Debug {
+    /// Metres: a bound on how far any point of any component travels over the whole motion.
+    fn length(&self) -> f64;
+
+    /// Writes the state at `t` (clamped to `[0, 1]`) into `out`, without allocating.
+    fn at_into(&self, m: &D, t: f64, out: &mut State<D>);
+}
+
+/// A primitive instance: a primitive with a specific start and displacement (paper section 3).
+#[derive(Debug)]
+pub struct Instance<D: Domain> {
+    /// Name of the kind of motion, for people.
+    pub label: &'static str,
+    /// The motion.
+    pub motion: Box<dyn Motion<D>>,
+    /// What may touch during this instance, and no longer.
+    pub contacts: D::Contacts,
+    /// The components that it moves; all others stay bit for bit.
+    pub moves: ComponentSet,
+    /// The object that it manipulates or approaches, if any.
+    pub object: Option<ObjectId>,
+    /// May it be run backwards? A push may not.
+    pub reversible: bool,
+}
+
+impl<D: Domain> Instance<D> {
+    /// The state at `t`, as a new value.
+    pub fn at(&self, m: &D, t: f64, like: &State<D>) -> State<D> {
+        let mut out = like.clone();
+        self.motion.at_into(m, t, &mut out);
+        out
+    }
+}

@@ -1,0 +1,96 @@
+//! The actions A: what a robot can do, as `useful` and `propagate` (paper section 4.1).
+
+use rand::Rng;
+
+use crate::domain::Domain;
+use crate::motion::Instance;
+use crate::partial::PartialState;
+use crate::state::State;
+
+/// The instances that one `propagate` returns, in order of execution.
+pub type Instances<D> = Vec<Instance<D>>;
+
+/// Why a primitive that looked useful cannot be propagated: an ordinary outcome, counted, not an error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Infeasible {
+    /// No grasp of the object fits.
+    NoGrasp,
+    /// No contact from which the object could be moved the right way.
+    NoContact,
+    /// No robot configuration reaches the pose that is needed.
+    Unreachable,
+    /// Reached only outside the limits of the robot.
+    Limits,
+    /// The object would leave its support.
+    OffSupport,
+    /// It would end where it began.
+    NoProgress,
+}
+
+/// A manipulation primitive.
+///
+/// Obstacles are invisible here: `propagate` may not see B (Algorithm 1, `PATH(c1, c2, M, A)`). Several
+/// instances may be returned, also of other kinds: Push returns the transit to the pushing pose first.
+///
+/// # Laws
+/// - If `useful` and `propagate` succeeds, the instances are not empty, the first starts at `from` bit for
+///   bit, each next one starts where the last ended, and the end is nearer to `to` in the subspace that
+///   the primitive moves.
+/// - Components that an instance does not name in [`Instance::moves`] stay bit for bit.
+/// - Unnamed components of `to` are never used as a target.
+/// - Pure but for `rng`: same arguments, same generator, same result.
+///
+/// # Example
+/// A robot that goes straight to its target ("Transit" of paper section 3):
+/// ```
+/// use darrt_core::prelude::*;
+/// use darrt_core::motion::Straight;
+///
+/// struct Transit;
+/// impl<D: Domain> Primitive<D> for Transit {
+///     fn name(&self) -> &'static str { "Transit" }
+///     fn useful(&self, m: &D, from: &State<D>, to: &PartialState<D>) -> bool {
+///         to.are_objects_met(m, from) && !to.is_robot_met(m, from)
+///     }
+///     fn propagate(&self, m: &D, from: &State<D>, to: &PartialState<D>, _: &mut dyn rand::Rng)
+///         -> Result<Instances<D>, Infeasible>
+///     {
+///         let target = to.robot_overlay(m, &from.robot);
+///         let length = m.robot().distance(&from.robot, &target);
+///         Ok(vec![Instance {
+///             label: "Transit",
+///             motion: Box::new(Straight::new(from.clone(), target, length)),
+///             contacts: D::Contacts::default(),
+///             moves: ComponentSet::ROBOT,
+///             object: None,
+///             reversible: true,
+///         }])
+///     }
+/// }
+/// ```
+pub trait Primitive<D: Domain>: Send + Sync {
+    /// Its name, for people and for the counts.
+    fn name(&self) -> &'static str;
+
+    /// Would propagating `from` towards `to` end nearer to `to`? Cheap: no inverse kinematics.
+    fn useful(&self, m: &D, from: &State<D>, to: &PartialState<D>) -> bool;
+
+    /// Metres the robot must travel before it can start, if the primitive knows: how DISTANCE gets to see
+    /// A (paper section 4.3). Must not exceed the travel of a propagation that succeeds.
+    fn approach(&self, _m: &D, _from: &State<D>, _to: &PartialState<D>) -> Option<f64> {
+        None
+    }
+
+    /// A sequence of instances that takes `from` to a state nearer to `to`.
+    ///
+    /// # Errors
+    /// [`Infeasible`] when there is none, or none was found for this draw of `rng`.
+    fn propagate(
+        &self,
+        m: &D,
+        from: &State<D>,
+        to: &PartialState<D>,
+        rng: &mut dyn Rng,
+    ) -> Result<Instances<D>, Infeasible>;
+}

@@ -1,0 +1,37 @@
+//! Random streams keyed by (seed, attempt, iteration, purpose), so that a run repeats bit for bit however
+//! many threads share the work.
+
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// The generator behind every stream.
+pub type Stream = Xoshiro256PlusPlus;
+
+/// What a stream is for; streams of different purpose never share numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// Drawing samples.
+    Sample,
+    /// Choosing and propagating primitives.
+    Extend,
+    /// Things drawn once per attempt.
+    Attempt,
+}
+
+/// The generator for one purpose in one iteration of one attempt.
+///
+/// # Source
+/// The mixing function is that of Steele, Lea, Flood, Fast splittable pseudorandom number generators, 2014.
+pub fn stream(seed: u64, attempt: u64, iteration: u64, purpose: Purpose) -> Stream {
+    let mut key = mix(seed.wrapping_add(0x9E37_79B9_7F4A_7C15));
+    for part in [attempt, iteration, purpose as u64] {
+        key = mix(key ^ part.wrapping_mul(0xD1B5_4A32_D192_ED03).wrapping_add(0x9E37_79B9_7F4A_7C15));
+    }
+    Stream::seed_from_u64(key)
+}
+
+fn mix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}

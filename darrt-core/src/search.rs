@@ -1,0 +1,165 @@
+//! DARRT (Algorithm 1 of the paper): one attempt from the initial state.
+
+use crate::budget::Stop;
+use crate::distance::Distance;
+use crate::domain::Domain;
+use crate::extend::{ExtendOptions, Extension, extend_towards};
+use crate::observe::accounts::Accounts;
+use crate::partial::PartialState;
+use crate::plan::Plan;
+use crate::problem::Problem;
+use crate::random::{Purpose, stream};
+use crate::sample::Sampler;
+use crate::state::State;
+use crate::tree::{Edge, NodeId, Tree};
+use crate::validity::Blame;
+use crate::verify::{Refusal, Solution};
+
+/// The parts of the search that are variants of one trait each.
+pub struct Strategy<D: Domain> {
+    /// SAMPLE.
+    pub sampler: Box<dyn Sampler<D>>,
+    /// DISTANCE.
+    pub distance: Box<dyn Distance<D>>,
+    /// How EXTENDTOWARDS discretises.
+    pub extend: ExtendOptions,
+}
+
+impl<D: Domain> std::fmt::Debug for Strategy<D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Strategy").field("extend", &self.extend).finish_non_exhaustive()
+    }
+}
+
+/// One attempt: a tree that grows from the initial state.
+#[derive(Debug)]
+pub struct Darrt<'p, D: Domain> {
+    problem: &'p Problem<D>,
+    strategy: &'p Strategy<D>,
+    tree: Tree<D>,
+    accounts: Accounts,
+    seed: u64,
+    attempt: u64,
+    iteration: u64,
+    node_limit: usize,
+    goal_sample: Option<PartialState<D>>,
+    nearest_to_goal: f64,
+}
+
+/// What one iteration did.
+#[derive(Debug)]
+pub struct Step<D: Domain> {
+    /// States added to the tree.
+    pub added: usize,
+    /// What blocked the extension.
+    pub blame: Option<Blame>,
+    /// A verified solution, if one was found.
+    pub solution: Option<Solution<D>>,
+    /// Set when a state satisfied the goal but the verifier refused.
+    pub refusal: Option<Refusal>,
+    /// Set when the tree is full.
+    pub stop: Option<Stop>,
+}
+
+impl<'p, D: Domain> Darrt<'p, D> {
+    /// `V <- {c_I}`. Random choices are keyed by `(seed, attempt, iteration)`.
+    pub fn new(problem: &'p Problem<D>, strategy: &'p Strategy<D>, seed: u64, attempt: u64, node_limit: usize) -> Self {
+        let names = problem.primitives().iter().map(|p| p.name()).collect();
+        let mut rng = stream(seed, attempt, 0, Purpose::Attempt);
+        let goal_sample = problem.goal().sample(problem.domain(), &mut rng);
+        let mut darrt = Self {
+            problem,
+            strategy,
+            tree: Tree::rooted_at(problem.start().clone()),
+            accounts: Accounts::new(names),
+            seed,
+            attempt,
+            iteration: 0,
+            node_limit: node_limit.min(Tree::<D>::MAX_NODES),
+            goal_sample,
+            nearest_to_goal: f64::INFINITY,
+        };
+        darrt.note_distance_to_goal(problem.start());
+        darrt
+    }
+
+    /// One iteration of the loop of Algorithm 1.
+    pub fn step(&mut self) -> Step<D> {
+        let m = self.problem.domain();
+        self.iteration += 1;
+        let draw = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Sample);
+        let choose = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Extend);
+
+        let s = self.strategy.sampler.sample(m, self.problem.goal(), draw);
+        let t = self.strategy.distance.nearest(m, &self.tree, &s).unwrap_or(Tree::<D>::ROOT);
+        let from = self.tree.node(t).map_or(self.problem.start(), |node| &node.state);
+        let extension = extend_towards(self.problem, &self.strategy.extend, from, &s, choose);
+        self.accounts.count(&extension.buckets, extension.reached.len(), extension.is_met, extension.blame.as_ref());
+        self.absorb(t, extension)
+    }
+
+    /// `V <- V + {c_1 ... c_l}`, each tested against the goal.
+    fn absorb(&mut self, from: NodeId, extension: Extension<D>) -> Step<D> {
+        let mut step =
+            Step { added: extension.reached.len(), blame: extension.blame, solution: None, refusal: None, stop: None };
+        let mut parent = from;
+        for reached in extension.reached {
+            self.note_distance_to_goal(&reached.state);
+            let is_goal = self.problem.goal().is_satisfied(self.problem.domain(), &reached.state);
+            let edge = Edge { parent, instance: reached.instance, t: reached.t, primitive: reached.primitive };
+            let id = if self.tree.len() < self.node_limit { self.tree.add(reached.state, edge) } else { None };
+            let Some(id) = id else {
+                step.stop = Some(Stop::NodeLimit);
+                return step;
+            };
+            parent = id;
+            if is_goal {
+                match self.prove(id) {
+                    Ok(solution) => {
+                        step.solution = Some(solution);
+                        return step;
+                    }
+                    Err(refusal) => {
+                        self.accounts.refused += 1;
+                        step.refusal = Some(refusal);
+                    }
+                }
+            }
+        }
+        step
+    }
+
+    fn prove(&self, node: NodeId) -> Result<Solution<D>, Refusal> {
+        let lost = || Refusal { step: None, at: 0.0, reason: "the tree has no such node".to_owned() };
+        let plan = Plan::to_node(&self.tree, node).ok_or_else(lost)?;
+        let p = self.problem;
+        Solution::prove(p.domain(), p.start(), p.goal(), p.verifier(), plan)
+    }
+
+    fn note_distance_to_goal(&mut self, state: &State<D>) {
+        if let Some(goal) = &self.goal_sample {
+            let d = self.strategy.distance.distance(self.problem.domain(), state, goal);
+            self.nearest_to_goal = self.nearest_to_goal.min(d);
+        }
+    }
+
+    /// The tree so far.
+    pub fn tree(&self) -> &Tree<D> {
+        &self.tree
+    }
+
+    /// The counts so far.
+    pub fn accounts(&self) -> &Accounts {
+        &self.accounts
+    }
+
+    /// Iterations done.
+    pub fn iteration(&self) -> u64 {
+        self.iteration
+    }
+
+    /// Metres from a sample of the goal to the nearest state so far; infinite if the goal has no samples.
+    pub fn nearest_to_goal(&self) -> f64 {
+        self.nearest_to_goal
+    }
+}

@@ -1,0 +1,251 @@
+//! The owner of the loop: budget, restarts, threads, observers.
+//!
+//! Attempts are numbered and independent; each has its own random streams and its own share of the
+//! iterations. The result is that of the lowest-numbered attempt that solves, so it is the same on any
+//! number of threads.
+
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::budget::{Budget, Clock, Stop};
+use crate::domain::Domain;
+use crate::observe::accounts::Accounts;
+use crate::observe::{Event, Observer};
+use crate::problem::Problem;
+use crate::search::{Darrt, Strategy};
+use crate::verify::Solution;
+
+/// How [`solve`] works.
+#[derive(Debug, Clone)]
+pub struct SolveOptions {
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Limits.
+    pub budget: Budget,
+    /// Start again from the initial state after this many iterations; `None`: never.
+    pub restart_iterations: Option<u64>,
+    /// How many attempts run at the same time; at least 1.
+    pub threads: usize,
+}
+
+impl Default for SolveOptions {
+    fn default() -> Self {
+        Self { seed: 0, budget: Budget::default(), restart_iterations: None, threads: 1 }
+    }
+}
+
+/// How it ended. Stopping without a solution is a status, not an error.
+#[derive(Debug)]
+pub struct Outcome<D: Domain> {
+    /// The verified solution, if there is one.
+    pub solution: Option<Solution<D>>,
+    /// Why it stopped.
+    pub stop: Stop,
+    /// Counts over the attempts that decided the outcome.
+    pub accounts: Accounts,
+    /// Iterations over those attempts.
+    pub iterations: u64,
+    /// Nodes of the largest tree.
+    pub nodes: usize,
+    /// How many attempts were begun anew.
+    pub restarts: u64,
+    /// Metres from the goal to the nearest state found.
+    pub nearest_to_goal: f64,
+    /// Time used. The only field that differs from run to run.
+    pub elapsed: std::time::Duration,
+    /// The last refusal of the verifier, if it refused any plan.
+    pub last_refusal: Option<String>,
+}
+
+/// The result of one attempt.
+struct Attempt<D: Domain> {
+    number: u64,
+    solution: Option<Solution<D>>,
+    stop: Stop,
+    accounts: Accounts,
+    iterations: u64,
+    nodes: usize,
+    nearest_to_goal: f64,
+    last_refusal: Option<String>,
+}
+
+struct Shared<'a, D: Domain> {
+    problem: &'a Problem<D>,
+    strategy: &'a Strategy<D>,
+    options: &'a SolveOptions,
+    clock: Clock,
+    observer: Mutex<&'a mut dyn Observer>,
+    /// The number of the next attempt to be taken by a thread.
+    next: AtomicU64,
+    /// The lowest attempt that has solved; attempts above it are pointless.
+    solved: AtomicU64,
+    done: Mutex<Vec<Attempt<D>>>,
+}
+
+/// Solves `problem`, or says why not.
+pub fn solve<D: Domain>(
+    problem: &Problem<D>,
+    strategy: &Strategy<D>,
+    options: &SolveOptions,
+    observer: &mut dyn Observer,
+) -> Outcome<D> {
+    let shared = Shared {
+        problem,
+        strategy,
+        options,
+        clock: Clock::start(&options.budget),
+        observer: Mutex::new(observer),
+        next: AtomicU64::new(0),
+        solved: AtomicU64::new(u64::MAX),
+        done: Mutex::new(Vec::new()),
+    };
+    if options.threads <= 1 {
+        shared.work();
+    } else {
+        std::thread::scope(|scope| {
+            for _ in 0..options.threads {
+                scope.spawn(|| shared.work());
+            }
+        });
+    }
+    shared.outcome()
+}
+
+impl<D: Domain> Shared<'_, D> {
+    /// Takes attempts until there are none left or the budget ends.
+    fn work(&self) {
+        loop {
+            let number = self.next.fetch_add(1, Ordering::SeqCst);
+            let Some(share) = self.share(number) else { return };
+            if self.is_overtaken(number) || self.clock.stop().is_some() {
+                return;
+            }
+            let attempt = self.attempt(number, share);
+            if attempt.solution.is_some() {
+                self.solved.fetch_min(number, Ordering::SeqCst);
+            }
+            let goes_on = matches!(attempt.stop, Stop::Restart)
+                || (attempt.stop == Stop::NodeLimit && self.options.restart_iterations.is_some());
+            if let Ok(mut done) = self.done.lock() {
+                done.push(attempt);
+            }
+            if !goes_on {
+                return;
+            }
+        }
+    }
+
+    /// How many iterations attempt `number` may use; fixed beforehand, so that it does not depend on
+    /// what other threads do. `None` if the budget has nothing left for it.
+    fn share(&self, number: u64) -> Option<u64> {
+        let total = self.options.budget.iterations.unwrap_or(u64::MAX);
+        match self.options.restart_iterations {
+            None => (number == 0 && total > 0).then_some(total),
+            Some(each) => {
+                let used = each.max(1).saturating_mul(number);
+                (used < total).then(|| each.max(1).min(total - used))
+            }
+        }
+    }
+
+    fn is_overtaken(&self, number: u64) -> bool {
+        self.solved.load(Ordering::SeqCst) < number
+    }
+
+    fn tell(&self, event: &Event<'_>) -> ControlFlow<()> {
+        match self.observer.lock() {
+            Ok(mut observer) => observer.on_event(event),
+            Err(_) => ControlFlow::Break(()),
+        }
+    }
+
+    fn attempt(&self, number: u64, share: u64) -> Attempt<D> {
+        let limit = self.options.budget.nodes.unwrap_or(usize::MAX);
+        let mut darrt = Darrt::new(self.problem, self.strategy, self.options.seed, number, limit);
+        let mut solution = None;
+        let mut last_refusal = None;
+        let mut told = self.tell(&Event::AttemptStarted { attempt: number });
+        let stop = loop {
+            if told.is_break() {
+                self.options.budget.cancel.cancel();
+            }
+            if let Some(stop) = self.clock.stop() {
+                break stop;
+            }
+            if self.is_overtaken(number) {
+                break Stop::Overtaken;
+            }
+            if darrt.iteration() >= share {
+                let is_last = self.share(number + 1).is_none();
+                break if is_last { Stop::IterationLimit } else { Stop::Restart };
+            }
+            let step = darrt.step();
+            told = self.tell(&Event::Iteration {
+                attempt: number,
+                iteration: darrt.iteration(),
+                nodes: darrt.tree().len(),
+                added: step.added,
+                nearest_to_goal: darrt.nearest_to_goal(),
+                blame: step.blame.as_ref(),
+            });
+            if let Some(refusal) = step.refusal {
+                let reason = refusal.to_string();
+                told = self.tell(&Event::Refused { attempt: number, reason: &reason });
+                last_refusal = Some(reason);
+            }
+            if step.solution.is_some() {
+                solution = step.solution;
+                let _ = self.tell(&Event::Solved { attempt: number, iteration: darrt.iteration() });
+                break Stop::Solved;
+            }
+            if let Some(stop) = step.stop {
+                break stop;
+            }
+        };
+        let _ = self.tell(&Event::AttemptEnded { attempt: number, stop });
+        Attempt {
+            number,
+            solution,
+            stop,
+            iterations: darrt.iteration(),
+            nodes: darrt.tree().len(),
+            nearest_to_goal: darrt.nearest_to_goal(),
+            accounts: darrt.accounts().clone(),
+            last_refusal,
+        }
+    }
+
+    /// Puts together what the deciding attempts say: those up to the one that solved.
+    fn outcome(self) -> Outcome<D> {
+        let elapsed = self.clock.elapsed();
+        let names = self.problem.primitives().iter().map(|p| p.name()).collect();
+        let mut outcome = Outcome {
+            solution: None,
+            stop: self.clock.stop().unwrap_or(Stop::IterationLimit),
+            accounts: Accounts::new(names),
+            iterations: 0,
+            nodes: 0,
+            restarts: 0,
+            nearest_to_goal: f64::INFINITY,
+            elapsed,
+            last_refusal: None,
+        };
+        let mut attempts = self.done.into_inner().unwrap_or_default();
+        attempts.sort_by_key(|a| a.number);
+        for attempt in attempts {
+            outcome.accounts.merge(&attempt.accounts);
+            outcome.iterations += attempt.iterations;
+            outcome.nodes = outcome.nodes.max(attempt.nodes);
+            outcome.restarts = attempt.number;
+            outcome.nearest_to_goal = outcome.nearest_to_goal.min(attempt.nearest_to_goal);
+            outcome.last_refusal = attempt.last_refusal.or(outcome.last_refusal);
+            outcome.stop = attempt.stop;
+            if attempt.solution.is_some() {
+                outcome.solution = attempt.solution;
+                break;
+            }
+        }
+        outcome
+    }
+}

@@ -1,0 +1,148 @@
+//! The configuration space of one movable component, and the stock spaces.
+//!
+//! May touch: nothing of the search. Everything here is a pure function of its arguments and the
+//! caller's generator.
+
+use std::fmt::Debug;
+
+use rand::Rng;
+
+pub mod fixed;
+pub mod product;
+pub mod real_box;
+pub mod se2;
+pub mod se3;
+pub mod so2;
+
+pub use fixed::Fixed;
+pub use product::Product;
+pub use real_box::RealBox;
+pub use se2::Se2;
+pub use se3::Se3;
+pub use so2::So2;
+
+/// A set of the independently nameable parts of one component, for example base and arm of a robot.
+///
+/// A target may name only some groups of the robot: "the base there, the arm as it is". Bit `i` stands
+/// for group `i`; at most 32 groups.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct GroupSet(u32);
+
+impl GroupSet {
+    /// No group.
+    pub const NONE: Self = Self(0);
+
+    /// The groups `0 .. count` (`count` is clamped to 32).
+    pub const fn first(count: u32) -> Self {
+        if count >= 32 { Self(u32::MAX) } else { Self((1 << count) - 1) }
+    }
+
+    /// The single group `index` (empty when `index >= 32`).
+    pub const fn only(index: u32) -> Self {
+        if index >= 32 { Self(0) } else { Self(1 << index) }
+    }
+
+    /// Is group `index` in the set?
+    pub const fn contains(self, index: u32) -> bool {
+        index < 32 && self.0 & (1 << index) != 0
+    }
+
+    /// Is every group of `other` in this set?
+    pub const fn covers(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// Groups in either set.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Groups in both sets.
+    #[must_use]
+    pub const fn intersection(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
+    /// Groups shifted up by `by`, for products of spaces.
+    #[must_use]
+    pub const fn shifted(self, by: u32) -> Self {
+        if by >= 32 { Self(0) } else { Self(self.0 << by) }
+    }
+
+    /// Groups shifted down by `by`, for products of spaces.
+    #[must_use]
+    pub const fn lowered(self, by: u32) -> Self {
+        if by >= 32 { Self(0) } else { Self(self.0 >> by) }
+    }
+
+    /// Is the set empty?
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+}
+
+/// Configuration space of one movable component, `m` in `{R, o_1 ... o_n}` (paper section 3).
+///
+/// # Laws
+/// - `distance(a, a) == 0`, `distance(a, b) == distance(b, a)`, both finite and non-negative.
+/// - `interpolate(a, b, 0.0) == a` and `interpolate(a, b, 1.0) == b`, bit for bit; in between it stays in
+///   the space and its distance to `a` never shrinks.
+/// - `sample` is contained in the space.
+/// - `overlay(from, target, all groups) == target` and `overlay(from, target, none) == from`.
+///
+/// # Example
+/// A point on a segment of two metres:
+/// ```
+/// use darrt_core::space::ComponentSpace;
+/// use rand::{Rng, RngExt};
+///
+/// #[derive(Debug)]
+/// struct Segment;
+/// impl ComponentSpace for Segment {
+///     type Config = f64;
+///     fn dimension(&self) -> usize { 1 }
+///     fn contains(&self, q: &f64) -> bool { (0.0..=2.0).contains(q) }
+///     fn distance(&self, a: &f64, b: &f64) -> f64 { (a - b).abs() }
+///     fn interpolate(&self, a: &f64, b: &f64, t: f64) -> f64 {
+///         if t >= 1.0 { *b } else { a + (b - a) * t }
+///     }
+///     fn sample(&self, rng: &mut dyn Rng) -> f64 { rng.random_range(0.0..=2.0) }
+/// }
+/// assert_eq!(Segment.distance(&0.5, &1.5), 1.0);
+/// ```
+pub trait ComponentSpace: Send + Sync {
+    /// One configuration. Cheap to clone: it is copied into every node of the tree.
+    type Config: Clone + PartialEq + Debug + Send + Sync;
+
+    /// Degrees of freedom.
+    fn dimension(&self) -> usize;
+
+    /// Is `q` finite and inside the bounds?
+    fn contains(&self, q: &Self::Config) -> bool;
+
+    /// Metres that the reference points must travel from `a` to `b`.
+    fn distance(&self, a: &Self::Config, b: &Self::Config) -> f64;
+
+    /// The configuration at `t` in `[0, 1]` on the way from `a` to `b`; the ends bit for bit.
+    fn interpolate(&self, a: &Self::Config, b: &Self::Config, t: f64) -> Self::Config;
+
+    /// A random configuration.
+    fn sample(&self, rng: &mut dyn Rng) -> Self::Config;
+
+    /// The distance (in the unit of [`distance`](Self::distance)) up to which two configurations count as
+    /// the same when a target is compared with a state. Default: a nanometre.
+    fn tolerance(&self) -> f64 {
+        1e-9
+    }
+
+    /// The groups that a target may name on their own. Default: one, the whole component.
+    fn groups(&self) -> GroupSet {
+        GroupSet::first(1)
+    }
+
+    /// `target` in the groups of `groups`, `from` in all others.
+    fn overlay(&self, from: &Self::Config, target: &Self::Config, groups: GroupSet) -> Self::Config {
+        if groups.covers(self.groups()) { target.clone() } else { from.clone() }
+    }
+}

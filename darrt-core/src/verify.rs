@@ -1,0 +1,149 @@
+//! The independent judge of a plan. Success cannot be claimed without it: a [`Solution`] can only be
+//! built here, from a plan that a verifier has accepted.
+
+use std::fmt;
+
+use crate::domain::Domain;
+use crate::goal::Goal;
+use crate::plan::Plan;
+use crate::space::ComponentSpace;
+use crate::state::{ComponentId, ObjectId, State};
+use crate::validity::Validity;
+
+/// Why a plan is refused.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refusal {
+    /// Index of the step at fault; `None` if the plan as a whole is.
+    pub step: Option<usize>,
+    /// Fraction of that step at which the fault was found.
+    pub at: f64,
+    /// What is wrong, with names, values and bounds.
+    pub reason: String,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.step {
+            Some(step) => write!(f, "step {} at {:.4}: {}", step + 1, self.at, self.reason),
+            None => f.write_str(&self.reason),
+        }
+    }
+}
+
+/// Judges plans, independently of the planner and of the primitives.
+pub trait Verifier<D: Domain>: Send + Sync {
+    /// Accepts or refuses.
+    ///
+    /// # Errors
+    /// The first [`Refusal`] found.
+    fn verify(&self, m: &D, start: &State<D>, goal: &dyn Goal<D>, plan: &Plan<D>) -> Result<(), Refusal>;
+}
+
+/// A plan that a verifier has accepted. There is no other way to make one.
+#[derive(Debug)]
+pub struct Solution<D: Domain> {
+    plan: Plan<D>,
+}
+
+impl<D: Domain> Clone for Solution<D> {
+    fn clone(&self) -> Self {
+        Self { plan: self.plan.clone() }
+    }
+}
+
+impl<D: Domain> Solution<D> {
+    /// Has `plan` verified.
+    ///
+    /// # Errors
+    /// The verifier's [`Refusal`].
+    pub fn prove(
+        m: &D,
+        start: &State<D>,
+        goal: &dyn Goal<D>,
+        verifier: &dyn Verifier<D>,
+        plan: Plan<D>,
+    ) -> Result<Self, Refusal> {
+        verifier.verify(m, start, goal, &plan)?;
+        Ok(Self { plan })
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &Plan<D> {
+        &self.plan
+    }
+}
+
+/// Replays every step at a fixed spacing and asks a [`Validity`] (preferably a slower, more exact one than
+/// the planner's) about each state.
+#[derive(Debug, Clone)]
+pub struct Replay<V> {
+    oracle: V,
+    spacing_m: f64,
+}
+
+impl<V> Replay<V> {
+    /// A verifier that checks a state every `spacing_m` metres of travel (clamped to at least 1e-5 m).
+    pub fn new(oracle: V, spacing_m: f64) -> Self {
+        Self { oracle, spacing_m: spacing_m.max(1e-5) }
+    }
+
+    fn replay_step<D: Domain>(
+        &self,
+        m: &D,
+        plan: &Plan<D>,
+        index: usize,
+        before: &State<D>,
+    ) -> Result<State<D>, Refusal>
+    where
+        V: Validity<D>,
+    {
+        let refuse = |at: f64, reason: String| Refusal { step: Some(index), at, reason };
+        let Some(step) = plan.steps().get(index) else { return Ok(before.clone()) };
+        let entry = step.instance.at(m, 0.0, before);
+        if entry != *before {
+            return Err(refuse(0.0, format!("it starts at {entry:?}, but the step before ends at {before:?}")));
+        }
+        let count = (step.instance.motion.length() * step.until / self.spacing_m).ceil().clamp(1.0, 1e7);
+        let mut state = before.clone();
+        let mut i = 0.0;
+        while i < count {
+            i += 1.0;
+            let s = if i >= count { 1.0 } else { i / count };
+            step.instance.motion.at_into(m, s * step.until, &mut state);
+            if let Some(what) = stray(m, before, &state, step.instance.moves) {
+                return Err(refuse(s, format!("{what} moves, but the step does not move it")));
+            }
+            self.oracle.check(m, &state, &step.instance.contacts).map_err(|blame| refuse(s, blame.to_string()))?;
+        }
+        Ok(state)
+    }
+}
+
+/// A component that is not in `moves` and yet differs.
+fn stray<D: Domain>(m: &D, before: &State<D>, now: &State<D>, moves: crate::state::ComponentSet) -> Option<String> {
+    if !moves.contains(ComponentId::Robot) && before.robot != now.robot {
+        return Some(m.component_name(ComponentId::Robot).into_owned());
+    }
+    let strays = before.objects.iter().zip(&now.objects).enumerate().find_map(|(i, (a, b))| {
+        let id = ComponentId::Object(ObjectId::new(i));
+        (a != b && !moves.contains(id)).then_some(id)
+    })?;
+    Some(m.component_name(strays).into_owned())
+}
+
+impl<D: Domain, V: Validity<D>> Verifier<D> for Replay<V> {
+    fn verify(&self, m: &D, start: &State<D>, goal: &dyn Goal<D>, plan: &Plan<D>) -> Result<(), Refusal> {
+        let whole = |reason: String| Refusal { step: None, at: 0.0, reason };
+        if plan.start() != start {
+            return Err(whole("the plan does not start at the start of the problem".to_owned()));
+        }
+        if !m.robot().contains(&start.robot) {
+            return Err(whole("the start lies outside the robot's space".to_owned()));
+        }
+        let mut state = start.clone();
+        for index in 0..plan.steps().len() {
+            state = self.replay_step(m, plan, index, &state)?;
+        }
+        if goal.is_satisfied(m, &state) { Ok(()) } else { Err(whole("the plan does not end in the goal".to_owned())) }
+    }
+}

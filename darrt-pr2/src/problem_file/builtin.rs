@@ -1,0 +1,104 @@
+//! The paper's problems, embedded in the program.
+
+use super::ProblemFile;
+use super::error::ProblemFileError;
+use super::suggest::nearest;
+
+/// Name and text of every embedded problem, from easy to hard.
+const PROBLEMS: [(&str, &str); 6] = [
+    ("simple-plate", include_str!("../../scenes/simple-plate.toml")),
+    ("bowl", include_str!("../../scenes/bowl.toml")),
+    ("plate3-no-place", include_str!("../../scenes/plate3-no-place.toml")),
+    ("plate1", include_str!("../../scenes/plate1.toml")),
+    ("plate2", include_str!("../../scenes/plate2.toml")),
+    ("plate3", include_str!("../../scenes/plate3.toml")),
+];
+
+/// The names of the embedded problems, from easy to hard.
+pub fn builtin_names() -> [&'static str; 6] {
+    PROBLEMS.map(|(name, _)| name)
+}
+
+/// The embedded problem called `name`, in any case and also in the paper's spelling, such as `Plate3 (No Place)`.
+///
+/// # Errors
+/// [`ProblemFileError::UnknownProblem`] with all names and the nearest one.
+pub fn builtin(name: &str) -> Result<ProblemFile, ProblemFileError> {
+    let (canonical, text) = find(name).ok_or_else(|| unknown(name))?;
+    ProblemFile::from_toml(text, &format!("built-in {canonical}"))
+}
+
+/// The text of the embedded problem called `name`, for a person who wants a copy to edit.
+///
+/// # Errors
+/// As [`builtin`].
+pub fn builtin_text(name: &str) -> Result<&'static str, ProblemFileError> {
+    find(name).map(|(_, text)| text).ok_or_else(|| unknown(name))
+}
+
+/// The built-in spelling of `name`, if it is one.
+pub fn canonical_name(name: &str) -> Option<&'static str> {
+    find(name).map(|(canonical, _)| canonical)
+}
+
+/// The error for a name that is neither a built-in problem nor a file.
+pub(super) fn unknown(name: &str) -> ProblemFileError {
+    ProblemFileError::UnknownProblem {
+        name: super::suggest::shown(name),
+        nearest: nearest(name, builtin_names()).map(str::to_owned),
+        available: builtin_names().map(str::to_owned).to_vec(),
+    }
+}
+
+fn find(name: &str) -> Option<(&'static str, &'static str)> {
+    let wanted = folded(name);
+    PROBLEMS
+        .into_iter()
+        .find(|(candidate, _)| folded(candidate) == wanted)
+}
+
+/// Letters and digits only, in lower case: what the spellings of one name have in common.
+fn folded(name: &str) -> String {
+    name.chars()
+        .filter(char::is_ascii_alphanumeric)
+        .map(|c| c.to_ascii_lowercase())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_embedded_problem_is_valid_and_bears_its_name() {
+        for name in builtin_names() {
+            assert_eq!(builtin(name).unwrap().name, name);
+        }
+    }
+
+    #[test]
+    fn the_spellings_of_the_paper_are_accepted() {
+        for (spelling, name) in [
+            ("Plate1", "plate1"),
+            ("PLATE2", "plate2"),
+            ("Plate3 (No Place)", "plate3-no-place"),
+            ("Plate3-NoPlace", "plate3-no-place"),
+            ("Simple Plate", "simple-plate"),
+            ("simple_plate", "simple-plate"),
+            ("Bowl", "bowl"),
+        ] {
+            assert_eq!(canonical_name(spelling), Some(name));
+        }
+    }
+
+    #[test]
+    fn an_unknown_name_lists_all_and_the_nearest() {
+        let message = ProblemFile::open("plat2").unwrap_err().to_string();
+        assert!(message.contains("`plat2`"), "{message}");
+        assert!(message.contains("did you mean `plate2`?"), "{message}");
+        for name in builtin_names() {
+            assert!(message.contains(name), "{message}");
+        }
+        assert!(builtin_text("nothing").is_err());
+    }
+}

@@ -1,0 +1,185 @@
+//! What can be wrong with a problem file.
+
+use std::io;
+
+use thiserror::Error;
+
+use super::suggest::{hint, listed};
+
+/// A problem file that cannot be used, with the place and the reason.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ProblemFileError {
+    /// The file cannot be opened or read.
+    #[error("{file}: cannot be read: {source}")]
+    Io {
+        /// The file.
+        file: String,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// The path is not a regular file.
+    #[error("{file}: is not a regular file")]
+    NotAFile {
+        /// The path.
+        file: String,
+    },
+    /// The file is larger than a problem file may be.
+    #[error("{file}: has {bytes} bytes, a problem file may have at most {limit}")]
+    TooLarge {
+        /// The file.
+        file: String,
+        /// Its size.
+        bytes: u64,
+        /// The bound.
+        limit: u64,
+    },
+    /// The file is not UTF-8 text.
+    #[error("{file}: is not UTF-8 text, the byte at offset {offset} is not valid")]
+    NotUtf8 {
+        /// The file.
+        file: String,
+        /// Offset of the first bad byte.
+        offset: usize,
+    },
+    /// Brackets or dotted keys are nested too deeply.
+    #[error("{file}:{line}:{column}: nested deeper than {limit} levels")]
+    TooDeep {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column in characters, from 1.
+        column: usize,
+        /// The bound.
+        limit: usize,
+    },
+    /// The text is not TOML, or a key or value is not part of the format.
+    #[error("{file}:{line}:{column}: {message}{}", hint(nearest.as_deref()))]
+    Syntax {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column in characters, from 1.
+        column: usize,
+        /// What is wrong, with the offending key or value.
+        message: String,
+        /// The nearest valid key or value.
+        nearest: Option<String>,
+    },
+    /// A key holds a value that breaks a rule of the format.
+    #[error("{file}: `{key}` {flaw}")]
+    Invalid {
+        /// The file.
+        file: String,
+        /// Path of the key, such as `obstacle[3].shape.box.size[1]`; indices count from 0.
+        key: String,
+        /// The broken rule.
+        flaw: Flaw,
+    },
+    /// There is no embedded problem and no file of this name.
+    #[error(
+        "there is no problem file or built-in problem `{name}`{}; built-in problems: {}",
+        hint(nearest.as_deref()),
+        listed(available)
+    )]
+    UnknownProblem {
+        /// What was asked for.
+        name: String,
+        /// The nearest built-in name.
+        nearest: Option<String>,
+        /// All built-in names.
+        available: Vec<String>,
+    },
+}
+
+/// A broken rule, worded to follow the path of the key.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Flaw {
+    /// A number is outside its bound.
+    #[error("is {value}, must be {bound}")]
+    OutOfRange {
+        /// The number.
+        value: f64,
+        /// The bound in words.
+        bound: String,
+    },
+    /// A count or length is outside its bound.
+    #[error("has {found} entries, must have {bound}")]
+    WrongLength {
+        /// How many there are.
+        found: usize,
+        /// The bound in words.
+        bound: String,
+    },
+    /// A range ends before it starts.
+    #[error("is the range [{low}, {high}], its lower end must not exceed its upper end")]
+    Inverted {
+        /// Lower end as written.
+        low: f64,
+        /// Upper end as written.
+        high: f64,
+    },
+    /// A quaternion is not of unit length.
+    #[error("has the norm {norm}, a unit quaternion [x, y, z, w] must have 1 within {tolerance}")]
+    NotUnit {
+        /// The norm.
+        norm: f64,
+        /// The tolerance.
+        tolerance: f64,
+    },
+    /// A name refers to nothing.
+    #[error(
+        "names the {kind} `{value}`, which does not exist{}; there are: {}",
+        hint(nearest.as_deref()),
+        listed(available)
+    )]
+    UnknownName {
+        /// Kind of thing.
+        kind: &'static str,
+        /// The name.
+        value: String,
+        /// The nearest valid name.
+        nearest: Option<String>,
+        /// The valid names.
+        available: Vec<String>,
+    },
+    /// Two things have the same name.
+    #[error("is `{name}`, a name already taken by `{taken_by}`")]
+    Duplicate {
+        /// The name.
+        name: String,
+        /// Path of the key that has it.
+        taken_by: String,
+    },
+    /// An object or goal is not on its surface.
+    #[error(
+        "puts `{name}` at [{}, {}], {outside} m outside the surface `{surface}`; its centre must be inside",
+        at[0], at[1]
+    )]
+    OffSurface {
+        /// What is placed.
+        name: String,
+        /// World x, y.
+        at: [f64; 2],
+        /// How far outside (m).
+        outside: f64,
+        /// The surface.
+        surface: String,
+    },
+    /// Keys contradict each other, one is missing, or a value makes no sense with another.
+    #[error("{0}")]
+    Inconsistent(String),
+}
+
+/// A flaw and the path of the key that has it.
+pub(crate) type Located = (String, Flaw);
+
+impl Flaw {
+    /// The flaw at `key`.
+    pub(crate) fn at(self, key: impl Into<String>) -> Located {
+        (key.into(), self)
+    }
+}

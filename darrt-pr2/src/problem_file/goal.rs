@@ -1,0 +1,145 @@
+//! Goals: where the objects shall end.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// `[goal]`: a list of goals for single objects.
+///
+/// Goals of different objects must all hold; several goals of one object are alternatives.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Goal {
+    /// At least one goal.
+    #[serde(rename = "object")]
+    pub objects: Vec<ObjectGoal>,
+}
+
+impl Goal {
+    /// The alternatives of each object that has a goal, in the order in which the file names the objects.
+    pub fn by_object(&self) -> Vec<(&str, Vec<&ObjectGoal>)> {
+        let mut groups: Vec<(&str, Vec<&ObjectGoal>)> = Vec::new();
+        for goal in &self.objects {
+            match groups.iter_mut().find(|(name, _)| *name == goal.object) {
+                Some((_, alternatives)) => alternatives.push(goal),
+                None => groups.push((&goal.object, vec![goal])),
+            }
+        }
+        groups
+    }
+}
+
+/// Whether the object must be in the hand at the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum GoalState {
+    /// The object stands on a surface and the hand has let go.
+    Released,
+    /// The hand holds the object.
+    Held,
+    /// Either.
+    Any,
+}
+
+/// An axis-aligned rectangle in the plane of a surface, world x and y in metres.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Region {
+    /// Smallest x and y.
+    pub min: [f64; 2],
+    /// Largest x and y.
+    pub max: [f64; 2],
+}
+
+/// `[[goal.object]]`: where one object shall end.
+///
+/// Exactly one of: `on` with `at`, `on` with `region`, or `position`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectGoal {
+    /// The object.
+    pub object: String,
+    /// The surface on which the object shall stand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on: Option<String>,
+    /// Where its centre shall be on the surface: world x, y in metres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<[f64; 2]>,
+    /// Where on the surface its centre may be, instead of one point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<Region>,
+    /// Where its centre shall be in the world (m), off every surface.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position: Option<[f64; 3]>,
+    /// How far the centre may be from the goal (m), > 0.
+    #[serde(default = "default_tolerance")]
+    pub tolerance_m: f64,
+    /// Wanted yaw (rad); free when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yaw: Option<f64>,
+    /// How far the yaw may be from the wanted one (rad), > 0.
+    #[serde(default = "default_yaw_tolerance")]
+    pub yaw_tolerance: f64,
+    /// Whether the object must be in the hand; by default `released` on a surface and `held` at a `position`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub state: Option<GoalState>,
+}
+
+/// The place of a goal, the keys `on`, `at`, `region` and `position` made exclusive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GoalTarget<'a> {
+    /// The centre stands over one point of a surface (world x, y).
+    On {
+        /// Name of the surface.
+        surface: &'a str,
+        /// World x, y of the centre.
+        at: [f64; 2],
+    },
+    /// The centre stands over a rectangle of a surface.
+    Within {
+        /// Name of the surface.
+        surface: &'a str,
+        /// The rectangle.
+        region: &'a Region,
+    },
+    /// The centre is at a point of the world.
+    At {
+        /// World x, y, z of the centre.
+        position: [f64; 3],
+    },
+}
+
+impl ObjectGoal {
+    /// The place of the goal; `None` when the keys contradict each other, which validation refuses.
+    pub fn target(&self) -> Option<GoalTarget<'_>> {
+        match (self.on.as_deref(), self.at, &self.region, self.position) {
+            (Some(surface), Some(at), None, None) => Some(GoalTarget::On { surface, at }),
+            (Some(surface), None, Some(region), None) => {
+                Some(GoalTarget::Within { surface, region })
+            }
+            (None, None, None, Some(position)) => Some(GoalTarget::At { position }),
+            _ => None,
+        }
+    }
+
+    /// Whether the object must be in the hand.
+    pub const fn state(&self) -> GoalState {
+        match self.state {
+            Some(state) => state,
+            None if self.position.is_some() => GoalState::Held,
+            None => GoalState::Released,
+        }
+    }
+
+    /// Fills in what depends on other keys.
+    pub(crate) fn normalise(&mut self) {
+        self.state = Some(self.state());
+    }
+}
+
+fn default_tolerance() -> f64 {
+    0.01
+}
+
+fn default_yaw_tolerance() -> f64 {
+    0.05
+}

@@ -1,0 +1,178 @@
+//! Reading a problem file: guards first, then TOML, then defaults, then validation.
+
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use super::error::ProblemFileError;
+use super::nesting::check_nesting;
+use super::shape::ShapeSpec;
+use super::suggest::{nearest_expected, shown};
+use super::{ProblemFile, builtin};
+
+/// Largest accepted problem file in bytes (4 MiB).
+pub const MAX_BYTES: u64 = 4 * 1024 * 1024;
+
+/// Deepest accepted nesting of brackets and dotted keys.
+pub const MAX_NESTING: usize = 64;
+
+/// Longest message of the TOML parser that is passed on, in characters.
+const MAX_MESSAGE: usize = 600;
+
+impl ProblemFile {
+    /// Reads, completes and validates the problem file at `path`.
+    ///
+    /// Relative paths of meshes and of a robot description are taken from the folder of the file.
+    ///
+    /// # Errors
+    /// When the file cannot be read, is larger than [`MAX_BYTES`], nested deeper than [`MAX_NESTING`], is not TOML, or
+    /// breaks a rule of the format; the error names the file, the place, the value and the bound.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ProblemFileError> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        let text = read_text(path, &name)?;
+        let mut problem = parse(&text, &name)?;
+        if let Some(folder) = path.parent() {
+            problem.resolve_paths(folder);
+        }
+        problem.validate(&name)?;
+        Ok(problem)
+    }
+
+    /// Parses, completes and validates a problem in TOML; `source_name` is how errors call the text.
+    ///
+    /// Relative paths inside are left as they are, that is relative to the working folder.
+    ///
+    /// # Errors
+    /// As [`ProblemFile::read`], except for what concerns the file system.
+    pub fn from_toml(text: &str, source_name: &str) -> Result<Self, ProblemFileError> {
+        let problem = parse(text, source_name)?;
+        problem.validate(source_name)?;
+        Ok(problem)
+    }
+
+    /// Opens what a person names on the command line: a built-in problem (any case, also in the paper's spelling, such
+    /// as `Plate3 (No Place)`), else a file.
+    ///
+    /// # Errors
+    /// [`ProblemFileError::UnknownProblem`] with the nearest built-in name when there is neither; else as
+    /// [`ProblemFile::read`].
+    pub fn open(name_or_path: &str) -> Result<Self, ProblemFileError> {
+        if builtin::canonical_name(name_or_path).is_some() {
+            return builtin::builtin(name_or_path);
+        }
+        if Path::new(name_or_path).exists() {
+            return Self::read(name_or_path);
+        }
+        Err(builtin::unknown(name_or_path))
+    }
+
+    /// Makes relative paths start at `folder`.
+    fn resolve_paths(&mut self, folder: &Path) {
+        let files = self
+            .obstacles
+            .iter_mut()
+            .map(|obstacle| &mut obstacle.shape)
+            .chain(self.objects.iter_mut().map(|object| &mut object.shape))
+            .filter_map(|shape| match shape {
+                ShapeSpec::Mesh { file, .. } => Some(file),
+                _ => None,
+            })
+            .chain(self.robot.urdf.as_mut());
+        for file in files {
+            let resolved: PathBuf = folder.join(&*file);
+            *file = resolved;
+        }
+    }
+}
+
+/// Reads at most [`MAX_BYTES`] of text from a regular file.
+fn read_text(path: &Path, name: &str) -> Result<String, ProblemFileError> {
+    let io = |source| ProblemFileError::Io {
+        file: name.to_owned(),
+        source,
+    };
+    let too_large = |bytes| ProblemFileError::TooLarge {
+        file: name.to_owned(),
+        bytes,
+        limit: MAX_BYTES,
+    };
+    let metadata = std::fs::metadata(path).map_err(io)?;
+    if !metadata.is_file() {
+        return Err(ProblemFileError::NotAFile {
+            file: name.to_owned(),
+        });
+    }
+    if metadata.len() > MAX_BYTES {
+        return Err(too_large(metadata.len()));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)
+        .map_err(io)?
+        .take(MAX_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(io)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(too_large(bytes.len() as u64));
+    }
+    String::from_utf8(bytes).map_err(|error| ProblemFileError::NotUtf8 {
+        file: name.to_owned(),
+        offset: error.utf8_error().valid_up_to(),
+    })
+}
+
+/// Guards, TOML and defaults; no validation.
+fn parse(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileError> {
+    let file = || source_name.to_owned();
+    if text.len() as u64 > MAX_BYTES {
+        return Err(ProblemFileError::TooLarge {
+            file: file(),
+            bytes: text.len() as u64,
+            limit: MAX_BYTES,
+        });
+    }
+    check_nesting(text, MAX_NESTING).map_err(|too_deep| {
+        let (line, column) = line_and_column(text, too_deep.offset);
+        ProblemFileError::TooDeep {
+            file: file(),
+            line,
+            column,
+            limit: MAX_NESTING,
+        }
+    })?;
+    let mut problem: ProblemFile = toml::from_str(text).map_err(|error| {
+        let offset = error.span().map_or(0, |span| span.start);
+        let (line, column) = line_and_column(text, offset);
+        let message: String = error.message().chars().take(MAX_MESSAGE).collect();
+        ProblemFileError::Syntax {
+            file: file(),
+            line,
+            column,
+            nearest: nearest_expected(error.message()).map(|name| shown(&name)),
+            message: message.replace('\n', "; "),
+        }
+    })?;
+    problem.normalise();
+    Ok(problem)
+}
+
+impl ProblemFile {
+    /// Fills in the defaults that depend on other keys.
+    fn normalise(&mut self) {
+        self.robot.normalise();
+        for object in &mut self.objects {
+            object.normalise();
+        }
+        for goal in &mut self.goal.objects {
+            goal.normalise();
+        }
+    }
+}
+
+/// Line and column, both from 1, of a byte offset; the column counts characters.
+fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+    (line, column)
+}

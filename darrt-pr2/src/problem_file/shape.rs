@@ -1,0 +1,104 @@
+//! Shapes of obstacles and objects as files write them.
+
+use std::path::PathBuf;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The shape of a body in its own frame, lengths in metres: `shape = { cylinder = { radius = 0.14, height = 0.02 } }`.
+///
+/// The frame's origin is the centre of the box, sphere, cylinder, capsule or bowl, and the origin of the coordinates
+/// for a hull or a mesh; the axis of round shapes is z.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum ShapeSpec {
+    /// A box with full edge lengths along x, y and z.
+    Box {
+        /// Full edge lengths, all > 0.
+        size: [f64; 3],
+    },
+    /// A ball.
+    Sphere {
+        /// Radius, > 0.
+        radius: f64,
+    },
+    /// A solid cylinder along z.
+    Cylinder {
+        /// Radius, > 0.
+        radius: f64,
+        /// Full height, > 0.
+        height: f64,
+    },
+    /// A cylinder along z with half-spherical ends.
+    Capsule {
+        /// Radius, > 0.
+        radius: f64,
+        /// Full height with both ends, > 2 * radius.
+        height: f64,
+    },
+    /// An open bowl or cup: a cylinder along z with a wall that a finger can go over.
+    Bowl {
+        /// Outer radius, > 0.
+        radius: f64,
+        /// Full height, > 0.
+        height: f64,
+        /// Thickness of the wall, > 0 and < radius.
+        wall: f64,
+    },
+    /// The convex hull of points.
+    Hull {
+        /// At least four points that do not lie in one plane.
+        points: Vec<[f64; 3]>,
+    },
+    /// A triangle mesh from an STL or OBJ file.
+    Mesh {
+        /// The file, relative to the problem file.
+        file: PathBuf,
+        /// Factor on the coordinates of the file, > 0; 0.001 for a file in millimetres.
+        #[serde(default = "one")]
+        scale: f64,
+    },
+}
+
+impl ShapeSpec {
+    /// The word that the files use for this kind of shape.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Box { .. } => "box",
+            Self::Sphere { .. } => "sphere",
+            Self::Cylinder { .. } => "cylinder",
+            Self::Capsule { .. } => "capsule",
+            Self::Bowl { .. } => "bowl",
+            Self::Hull { .. } => "hull",
+            Self::Mesh { .. } => "mesh",
+        }
+    }
+
+    /// Radius of the largest horizontal cross-section of a shape that is round about z (m), else `None`.
+    pub const fn round_radius(&self) -> Option<f64> {
+        match self {
+            Self::Sphere { radius }
+            | Self::Cylinder { radius, .. }
+            | Self::Capsule { radius, .. }
+            | Self::Bowl { radius, .. } => Some(*radius),
+            Self::Box { .. } | Self::Hull { .. } | Self::Mesh { .. } => None,
+        }
+    }
+
+    /// How far the shape reaches below its origin (m), positive; `None` for a mesh, whose file must be read first.
+    pub fn depth_below_origin(&self) -> Option<f64> {
+        match self {
+            Self::Box { size } => Some(size[2] / 2.0),
+            Self::Sphere { radius } => Some(*radius),
+            Self::Cylinder { height, .. }
+            | Self::Capsule { height, .. }
+            | Self::Bowl { height, .. } => Some(height / 2.0),
+            Self::Hull { points } => points.iter().map(|point| -point[2]).max_by(f64::total_cmp),
+            Self::Mesh { .. } => None,
+        }
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}

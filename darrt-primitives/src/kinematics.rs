@@ -1,0 +1,28 @@
+//! Kinematics of any tree of rigid links: reading a URDF, forward kinematics, Jacobians, numeric inverse.
+//!
+//! | question | file |
+//! |---|---|
+//! | is this text safe to hand to an XML reader? | [`guard`] |
+//! | is this robot description sound? | [`urdf`] |
+//! | between which values may a joint stand? | [`limit`] |
+//! | where are all links? | [`tree`] |
+//! | what do the links occupy? | [`collision`] |
+//! | how does a link move when one joint moves? | [`jacobian`] |
+//! | which joint values bring a link to a pose? | [`numeric_inverse`] |
+//!
+//! Nothing here names a robot. A robot with a closed-form inverse brings its own; [`numeric_inverse`] is for the rest.
+
+pub mod collision;
+pub mod guard;
+pub mod jacobian;
+pub mod limit;
+pub mod numeric_inverse;
+pub mod tree;
+pub mod urdf;
+
+pub use collision::{MeshPaths, NoMeshes, link_bodies};
+pub use jacobian::Chain;
+pub use limit::JointLimit;
+pub use numeric_inverse::{InverseOptions, NumericInverse};
+pub use tree::{KinematicTree, KinematicsError};
+pub use urdf::{RobotDescription, UrdfError};

@@ -1,0 +1,81 @@
+use super::*;
+
+#[test]
+fn accepts_what_xml_allows() {
+    for text in [
+        "",
+        "<a/>",
+        "<?xml version=\"1.0\"?><a b='1' c = \"2>3\" ><!-- <b><c> - x --><![CDATA[<d>]]]]><e /></a >",
+        "<a>text &amp; ' \" > more</a>",
+    ] {
+        assert!(check(text).is_ok(), "{text}: {:?}", check(text));
+    }
+}
+
+#[test]
+fn refuses_what_readers_could_read_otherwise() {
+    for text in [
+        "<a",
+        "<a>",
+        "</a>",
+        "<a></a></a>",
+        "<a b></a>",
+        "<a b=c></a>",
+        "<a b='<c>'></a>",
+        "<a b='1></a>",
+        "<a b='1'c='2'/>",
+        "<a / >",
+        "<a b>='</a>'></a>",
+        "<!-- a -- b -->",
+        "<!-- a",
+        "<?pi ? > <b> ?>",
+        "<?pi",
+        "<![CDATA[ ]]",
+        "< a/>",
+        "<a\"b/>",
+    ] {
+        assert!(matches!(check(text), Err(UrdfError::Malformed { .. })), "{text}: {:?}", check(text));
+    }
+}
+
+#[test]
+fn refuses_a_document_type() {
+    let text = "<?xml version='1.0'?><!DOCTYPE r [<!ENTITY a 'b'>]><r>&a;</r>";
+    assert!(matches!(check(text), Err(UrdfError::DocumentType { offset: 21 })));
+}
+
+#[test]
+fn bounds_nesting_exactly() {
+    let nested = |n: usize| format!("{}{}", "<a>".repeat(n), "</a>".repeat(n));
+    assert!(check(&nested(MAX_DEPTH)).is_ok());
+    for n in [MAX_DEPTH + 1, 10_000, 1_000_000] {
+        assert!(matches!(
+            check(&nested(n)),
+            Err(UrdfError::TooDeep { depth: 65, bound: 64, .. })
+        ));
+    }
+    // Unclosed tags are no way around it.
+    assert!(matches!(check(&"<a>".repeat(1_000_000)), Err(UrdfError::TooDeep { .. })));
+}
+
+#[test]
+fn bounds_size_count_and_tags() {
+    assert!(matches!(
+        check(&" ".repeat(20 << 20)),
+        Err(UrdfError::TooLarge { what: "text", .. })
+    ));
+    assert!(matches!(
+        check(&"<a/>".repeat(MAX_ELEMENTS + 1)),
+        Err(UrdfError::TooMany { what: "elements", .. })
+    ));
+    let attributes: String = (0..20_000).map(|i| format!(" a{i}='0'")).collect();
+    assert!(matches!(
+        check(&format!("<a{attributes}/>")),
+        Err(UrdfError::TooLarge { what: "tag", .. })
+    ));
+    let spaces: String = (0..100).map(|i| format!(" xmlns:a{i}='0'")).collect();
+    assert!(matches!(
+        check(&format!("<a{spaces}/>")),
+        Err(UrdfError::TooMany { what: "namespaces", .. })
+    ));
+}
