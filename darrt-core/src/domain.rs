@@ -15,7 +15,7 @@ use crate::state::{ComponentId, ObjectConfig, ObjectId, RobotConfig};
 /// `reach` and `hop` are finite and non-negative.
 ///
 /// # Example
-/// See [`testing::puck`](crate::testing::puck) (feature `testing`), a disc that pushes and carries pucks.
+/// See `testing::puck` (feature `testing`), a disc that pushes and carries pucks.
 pub trait Domain: Sized + Send + Sync + 'static {
     /// Space of the robot R.
     type Robot: ComponentSpace;

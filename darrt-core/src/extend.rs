@@ -7,6 +7,7 @@ use rand::Rng;
 use smallvec::SmallVec;
 
 use crate::domain::Domain;
+use crate::error::{Error, in_range};
 use crate::motion::Instance;
 use crate::observe::accounts::Bucket;
 use crate::partial::PartialState;
@@ -28,6 +29,21 @@ pub struct ExtendOptions {
 impl Default for ExtendOptions {
     fn default() -> Self {
         Self { spacing_m: 0.1, max_depth: 20 }
+    }
+}
+
+/// No instance adds more nodes than this, however long it is.
+const MAX_STEPS: f64 = 10_000.0;
+
+impl ExtendOptions {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a spacing that is not finite and positive, or a depth of zero.
+    pub fn check(&self) -> Result<(), Error> {
+        in_range("spacing_m", self.spacing_m, f64::MIN_POSITIVE, f64::MAX, "finite and positive")?;
+        in_range("max_depth", self.max_depth as f64, 1.0, f64::MAX, "at least 1")?;
+        Ok(())
     }
 }
 
@@ -72,13 +88,19 @@ pub fn extend_towards<D: Domain>(
     for (index, ((primitive, instance), start)) in e.instances.iter().zip(&e.states).enumerate() {
         let free = problem.validity().free_prefix(m, instance, start);
         discretise(m, instance, *primitive, free.fraction, options.spacing_m, start, &mut reached);
-        if let Some(blame) = free.blame {
+        let is_short = free.fraction.is_nan() || free.fraction < 1.0;
+        if let Some(blame) = free.blame.or_else(|| is_short.then(unexplained)) {
             blocked = Some((index, blame));
             break;
         }
     }
     let buckets = buckets(&e, blocked.as_ref().map(|(index, blame)| (*index, blame.kind)));
     Extension { reached, is_met: blocked.is_none() && e.end == PathEnd::Met, blame: blocked.map(|(_, b)| b), buckets }
+}
+
+/// What a validity check that stops short without saying why is taken to mean.
+fn unexplained() -> Blame {
+    Blame { kind: BlockKind::Other, first: "motion".into(), second: "unexplained block".into(), place: [0.0; 3] }
 }
 
 /// Appends the states of one instance at equal spacing up to `fraction`, the last one exactly there.
@@ -91,10 +113,12 @@ fn discretise<D: Domain>(
     start: &State<D>,
     reached: &mut Vec<Reached<D>>,
 ) {
-    if fraction <= 0.0 {
+    if fraction.is_nan() || fraction <= 0.0 {
         return;
     }
-    let steps = (instance.motion.length() * fraction / spacing_m).ceil().clamp(1.0, 10_000.0);
+    // Also one step for a length or spacing that is not a number.
+    let wanted = (instance.motion.length() * fraction / spacing_m).ceil();
+    let steps = if wanted > 1.0 { wanted.min(MAX_STEPS) } else { 1.0 };
     let mut i = 1.0;
     while i <= steps {
         let t = if i >= steps { fraction } else { fraction * i / steps };
@@ -122,6 +146,7 @@ fn buckets<D: Domain>(e: &Path<D>, blocked: Option<(usize, BlockKind)>) -> Small
         }
     }
     if e.end == PathEnd::Depth
+        && blocked.is_none()
         && let Some((primitive, _)) = e.trials.last()
         && let Some(slot) = buckets.get_mut(usize::from(*primitive))
     {

@@ -6,13 +6,13 @@
 //!
 //! | Algorithm 1 | here |
 //! |---|---|
-//! | input M, B, A, c_I, G | [`problem`] ([`domain`], [`validity`], [`primitive`], [`goal`]) |
+//! | input M, B, A, `c_I`, G | [`problem`] ([`domain`], [`validity`], [`primitive`], [`goal`]) |
 //! | the loop | [`search`], owned by [`solve`] |
 //! | SAMPLE(M) | [`sample`] |
 //! | arg min DISTANCE(v, s, M, A) | [`nearest`], [`distance`] |
 //! | EXTENDTOWARDS | [`extend`] |
 //! | PATH, `useful`, `propagate` | [`path`](mod@path), [`primitive`] |
-//! | collision(e_i, M, B) | [`validity`] |
+//! | `collision(e_i, M, B)` | [`validity`] |
 //! | V | [`tree`] |
 //!
 //! A result is a [`verify::Solution`], and only the independent verifier can make one.

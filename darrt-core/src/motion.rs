@@ -1,6 +1,6 @@
 //! What a primitive instance does over time: a pure function of `t` in `[0, 1]`.
 
-use std::fmt::Debug;
+use std::fmt::{self, Debug};
 
 use crate::domain::Domain;
 use crate::state::{ComponentSet, ObjectId, State};
@@ -23,12 +23,17 @@ pub trait Motion<D: Domain>: Send + Sync + Debug {
     /// Metres: a bound on how far any point of any component travels over the whole motion.
     fn length(&self) -> f64;
 
+    /// Parameters in `[0, 1]`, ascending, at which the direction of motion may change: between two of them every
+    /// moved component follows the interpolation of its space (or is rigid to one that does). For exporting plans.
+    fn knots(&self) -> &[f64] {
+        &[]
+    }
+
     /// Writes the state at `t` (clamped to `[0, 1]`) into `out`, without allocating.
     fn at_into(&self, m: &D, t: f64, out: &mut State<D>);
 }
 
 /// A primitive instance: a primitive with a specific start and displacement (paper section 3).
-#[derive(Debug)]
 pub struct Instance<D: Domain> {
     /// Name of the kind of motion, for people.
     pub label: &'static str,
@@ -50,5 +55,19 @@ impl<D: Domain> Instance<D> {
         let mut out = like.clone();
         self.motion.at_into(m, t, &mut out);
         out
+    }
+}
+
+// Not derived: that would ask the domain to be printable.
+impl<D: Domain> Debug for Instance<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Instance")
+            .field("label", &self.label)
+            .field("motion", &self.motion)
+            .field("contacts", &self.contacts)
+            .field("moves", &self.moves)
+            .field("object", &self.object)
+            .field("reversible", &self.reversible)
+            .finish()
     }
 }

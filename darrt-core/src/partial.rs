@@ -7,6 +7,7 @@ use std::fmt;
 
 use crate::domain::Domain;
 use crate::error::Error;
+use crate::random::{Purpose, stream};
 use crate::space::{ComponentSpace, GroupSet};
 use crate::state::{ComponentId, ComponentSet, ObjectConfig, ObjectId, PerObject, RobotConfig, State};
 
@@ -147,10 +148,13 @@ impl<D: Domain> PartialState<D> {
     }
 
     /// Does this target name only what `other` names, with the same values?
-    pub fn is_subset_of(&self, other: &Self) -> bool {
+    pub fn is_subset_of(&self, m: &D, other: &Self) -> bool {
         let robot = match (&self.robot, &other.robot) {
             (None, _) => true,
-            (Some(a), Some(b)) => b.groups.covers(a.groups) && a.config == b.config,
+            // Outside the named groups a configuration means nothing.
+            (Some(a), Some(b)) => {
+                b.groups.covers(a.groups) && m.robot().overlay(&b.config, &a.config, a.groups) == b.config
+            }
             (Some(_), None) => false,
         };
         robot && self.objects().all(|(id, config)| other.object(id) == Some(config))
@@ -190,10 +194,12 @@ impl<D: Domain> PartialState<D> {
             component: m.component_name(component).into_owned(),
             config,
         };
-        if let Some(target) = self.robot.as_ref().filter(|t| t.groups.covers(m.robot().groups()))
-            && !m.robot().contains(&target.config)
-        {
-            return Err(outside(ComponentId::Robot, format!("{:?}", target.config)));
+        if let Some(target) = &self.robot {
+            // The groups that it leaves open are filled from a configuration that does lie in the space.
+            let within = m.robot().sample(&mut stream(0, 0, 0, Purpose::Attempt));
+            if !m.robot().contains(&m.robot().overlay(&within, &target.config, target.groups)) {
+                return Err(outside(ComponentId::Robot, format!("{:?}", target.config)));
+            }
         }
         for ((id, config), space) in self.objects().filter_map(|o| Some((o, m.objects().get(o.0.index())?))) {
             if !space.contains(config) {

@@ -23,7 +23,7 @@ pub enum Trial {
     },
     /// It found no way.
     Infeasible(Infeasible),
-    /// It led back to a state that this path has already left, and was undone.
+    /// It led nowhere, or back to a state that this path has already left, and was undone.
     NoProgress,
 }
 
@@ -78,13 +78,11 @@ pub fn path<D: Domain>(
             path.end = PathEnd::Met;
             return path;
         }
-        match advance(m, primitives, &mut path, &here, to, rng) {
-            Some(next) => here = next,
-            None => {
-                path.end = PathEnd::Stuck;
-                return path;
-            }
-        }
+        let Some(next) = advance(m, primitives, &mut path, &here, to, rng) else {
+            path.end = PathEnd::Stuck;
+            return path;
+        };
+        here = next;
     }
     if to.is_met(m, &here) {
         path.end = PathEnd::Met;
@@ -124,9 +122,11 @@ fn advance<D: Domain>(
                     path.instances.push((id, Arc::new(instance)));
                     path.states.push(end.clone());
                 }
-                // Everything before the new instances is where this path has been.
+                // Everything before the new instances is where this path has been. A state that is not even
+                // near itself has a component that is not a number.
                 let been = path.states.get(..=first).unwrap_or_default();
-                if path.instances.len() == first || been.iter().any(|state| state.is_near(m, &end)) {
+                let is_lost = path.instances.len() == first || !end.is_near(m, &end);
+                if is_lost || been.iter().any(|state| state.is_near(m, &end)) {
                     path.instances.truncate(first);
                     path.states.truncate(first + 1);
                     path.trials.push((id, Trial::NoProgress));

@@ -35,3 +35,32 @@ fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+
+    #[test]
+    fn streams_repeat_and_differ_in_every_key() {
+        let first = |seed, attempt, iteration, purpose| -> u64 { stream(seed, attempt, iteration, purpose).random() };
+        let reference = first(1, 2, 3, Purpose::Sample);
+        assert_eq!(reference, first(1, 2, 3, Purpose::Sample));
+        for other in [
+            first(0, 2, 3, Purpose::Sample),
+            first(1, 3, 2, Purpose::Sample),
+            first(1, 2, 4, Purpose::Sample),
+            first(1, 2, 3, Purpose::Extend),
+            first(2, 1, 3, Purpose::Sample),
+        ] {
+            assert_ne!(reference, other);
+        }
+    }
+
+    #[test]
+    fn first_draws_over_iterations_are_uniform() {
+        let hits = (0..20_000).filter(|i| stream(7, 0, *i, Purpose::Sample).random_bool(0.2)).count();
+        assert!((3_800..4_200).contains(&hits), "{hits}");
+    }
+}

@@ -94,14 +94,23 @@ impl<'p, D: Domain> Darrt<'p, D> {
         let t = self.strategy.distance.nearest(m, &self.tree, &s).unwrap_or(Tree::<D>::ROOT);
         let from = self.tree.node(t).map_or(self.problem.start(), |node| &node.state);
         let extension = extend_towards(self.problem, &self.strategy.extend, from, &s, choose);
-        self.accounts.count(&extension.buckets, extension.reached.len(), extension.is_met, extension.blame.as_ref());
-        self.absorb(t, extension)
+        let (is_met, buckets) = (extension.is_met, extension.buckets.clone());
+        let step = self.absorb(t, extension);
+        self.accounts.count(&buckets, step.added, is_met, step.blame.as_ref());
+        step
+    }
+
+    /// The empty plan, if the start lies in the goal and the verifier agrees.
+    pub fn prove_start(&mut self) -> Option<Result<Solution<D>, Refusal>> {
+        let is_goal = self.problem.goal().is_satisfied(self.problem.domain(), self.problem.start());
+        let proof = is_goal.then(|| self.prove(Tree::<D>::ROOT))?;
+        self.accounts.refused += u64::from(proof.is_err());
+        Some(proof)
     }
 
     /// `V <- V + {c_1 ... c_l}`, each tested against the goal.
     fn absorb(&mut self, from: NodeId, extension: Extension<D>) -> Step<D> {
-        let mut step =
-            Step { added: extension.reached.len(), blame: extension.blame, solution: None, refusal: None, stop: None };
+        let mut step = Step { added: 0, blame: extension.blame, solution: None, refusal: None, stop: None };
         let mut parent = from;
         for reached in extension.reached {
             self.note_distance_to_goal(&reached.state);
@@ -113,6 +122,7 @@ impl<'p, D: Domain> Darrt<'p, D> {
                 return step;
             };
             parent = id;
+            step.added += 1;
             if is_goal {
                 match self.prove(id) {
                     Ok(solution) => {
@@ -120,8 +130,13 @@ impl<'p, D: Domain> Darrt<'p, D> {
                         return step;
                     }
                     Err(refusal) => {
+                        // A refused state must not stay: nothing would be nearer to the goal, and every
+                        // extension towards the goal would begin and end there.
+                        self.tree.remove_last();
+                        step.added -= 1;
                         self.accounts.refused += 1;
                         step.refusal = Some(refusal);
+                        return step;
                     }
                 }
             }

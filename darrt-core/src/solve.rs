@@ -8,13 +8,13 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::budget::{Budget, Clock, Stop};
+use crate::budget::{Budget, Cancel, Clock, Stop};
 use crate::domain::Domain;
 use crate::observe::accounts::Accounts;
 use crate::observe::{Event, Observer};
 use crate::problem::Problem;
 use crate::search::{Darrt, Strategy};
-use crate::verify::Solution;
+use crate::verify::{Refusal, Solution};
 
 /// How [`solve`] works.
 #[derive(Debug, Clone)]
@@ -70,11 +70,19 @@ struct Attempt<D: Domain> {
     last_refusal: Option<String>,
 }
 
+/// What an attempt has come upon so far.
+struct Found<D: Domain> {
+    solution: Option<Solution<D>>,
+    last_refusal: Option<String>,
+}
+
 struct Shared<'a, D: Domain> {
     problem: &'a Problem<D>,
     strategy: &'a Strategy<D>,
     options: &'a SolveOptions,
     clock: Clock,
+    /// Set by an observer; the caller's own token is not touched.
+    halt: Cancel,
     observer: Mutex<&'a mut dyn Observer>,
     /// The number of the next attempt to be taken by a thread.
     next: AtomicU64,
@@ -95,6 +103,7 @@ pub fn solve<D: Domain>(
         strategy,
         options,
         clock: Clock::start(&options.budget),
+        halt: Cancel::new(),
         observer: Mutex::new(observer),
         next: AtomicU64::new(0),
         solved: AtomicU64::new(u64::MAX),
@@ -118,7 +127,8 @@ impl<D: Domain> Shared<'_, D> {
         loop {
             let number = self.next.fetch_add(1, Ordering::SeqCst);
             let Some(share) = self.share(number) else { return };
-            if self.is_overtaken(number) || self.clock.stop().is_some() {
+            // The first attempt always begins: it costs nothing and says how far the goal is.
+            if number > 0 && (self.is_overtaken(number) || self.stop().is_some()) {
                 return;
             }
             let attempt = self.attempt(number, share);
@@ -137,14 +147,15 @@ impl<D: Domain> Shared<'_, D> {
     }
 
     /// How many iterations attempt `number` may use; fixed beforehand, so that it does not depend on
-    /// what other threads do. `None` if the budget has nothing left for it.
+    /// what other threads do. `None` if the budget has nothing left for it; the first attempt is always
+    /// begun.
     fn share(&self, number: u64) -> Option<u64> {
         let total = self.options.budget.iterations.unwrap_or(u64::MAX);
         match self.options.restart_iterations {
-            None => (number == 0 && total > 0).then_some(total),
+            None => (number == 0).then_some(total),
             Some(each) => {
                 let used = each.max(1).saturating_mul(number);
-                (used < total).then(|| each.max(1).min(total - used))
+                (number == 0 || used < total).then(|| each.max(1).min(total - used))
             }
         }
     }
@@ -153,35 +164,66 @@ impl<D: Domain> Shared<'_, D> {
         self.solved.load(Ordering::SeqCst) < number
     }
 
-    fn tell(&self, event: &Event<'_>) -> ControlFlow<()> {
-        match self.observer.lock() {
+    /// `Some` if time is up or somebody asked for an end.
+    fn stop(&self) -> Option<Stop> {
+        if self.halt.is_cancelled() { Some(Stop::Cancelled) } else { self.clock.stop() }
+    }
+
+    fn tell(&self, event: &Event<'_>) {
+        let flow = match self.observer.lock() {
             Ok(mut observer) => observer.on_event(event),
             Err(_) => ControlFlow::Break(()),
+        };
+        if flow.is_break() {
+            self.halt.cancel();
         }
     }
 
     fn attempt(&self, number: u64, share: u64) -> Attempt<D> {
         let limit = self.options.budget.nodes.unwrap_or(usize::MAX);
         let mut darrt = Darrt::new(self.problem, self.strategy, self.options.seed, number, limit);
-        let mut solution = None;
-        let mut last_refusal = None;
-        let mut told = self.tell(&Event::AttemptStarted { attempt: number });
-        let stop = loop {
-            if told.is_break() {
-                self.options.budget.cancel.cancel();
-            }
-            if let Some(stop) = self.clock.stop() {
-                break stop;
+        let mut found = Found { solution: None, last_refusal: None };
+        self.tell(&Event::AttemptStarted { attempt: number });
+        match darrt.prove_start() {
+            Some(Ok(solution)) => found.solution = Some(solution),
+            Some(Err(refusal)) => found.last_refusal = Some(self.tell_refusal(number, &refusal)),
+            None => {}
+        }
+        let stop = match found.solution {
+            Some(_) => Stop::Solved,
+            None => self.run(number, share, &mut darrt, &mut found),
+        };
+        if stop == Stop::Solved {
+            self.tell(&Event::Solved { attempt: number, iteration: darrt.iteration() });
+        }
+        self.tell(&Event::AttemptEnded { attempt: number, stop });
+        Attempt {
+            number,
+            solution: found.solution,
+            stop,
+            iterations: darrt.iteration(),
+            nodes: darrt.tree().len(),
+            nearest_to_goal: darrt.nearest_to_goal(),
+            accounts: darrt.accounts().clone(),
+            last_refusal: found.last_refusal,
+        }
+    }
+
+    /// Steps until something ends the attempt.
+    fn run(&self, number: u64, share: u64, darrt: &mut Darrt<'_, D>, found: &mut Found<D>) -> Stop {
+        loop {
+            if let Some(stop) = self.stop() {
+                return stop;
             }
             if self.is_overtaken(number) {
-                break Stop::Overtaken;
+                return Stop::Overtaken;
             }
             if darrt.iteration() >= share {
                 let is_last = self.share(number + 1).is_none();
-                break if is_last { Stop::IterationLimit } else { Stop::Restart };
+                return if is_last { Stop::IterationLimit } else { Stop::Restart };
             }
             let step = darrt.step();
-            told = self.tell(&Event::Iteration {
+            self.tell(&Event::Iteration {
                 attempt: number,
                 iteration: darrt.iteration(),
                 nodes: darrt.tree().len(),
@@ -190,39 +232,32 @@ impl<D: Domain> Shared<'_, D> {
                 blame: step.blame.as_ref(),
             });
             if let Some(refusal) = step.refusal {
-                let reason = refusal.to_string();
-                told = self.tell(&Event::Refused { attempt: number, reason: &reason });
-                last_refusal = Some(reason);
+                found.last_refusal = Some(self.tell_refusal(number, &refusal));
             }
             if step.solution.is_some() {
-                solution = step.solution;
-                let _ = self.tell(&Event::Solved { attempt: number, iteration: darrt.iteration() });
-                break Stop::Solved;
+                found.solution = step.solution;
+                return Stop::Solved;
             }
             if let Some(stop) = step.stop {
-                break stop;
+                return stop;
             }
-        };
-        let _ = self.tell(&Event::AttemptEnded { attempt: number, stop });
-        Attempt {
-            number,
-            solution,
-            stop,
-            iterations: darrt.iteration(),
-            nodes: darrt.tree().len(),
-            nearest_to_goal: darrt.nearest_to_goal(),
-            accounts: darrt.accounts().clone(),
-            last_refusal,
         }
+    }
+
+    fn tell_refusal(&self, attempt: u64, refusal: &Refusal) -> String {
+        let reason = refusal.to_string();
+        self.tell(&Event::Refused { attempt, reason: &reason });
+        reason
     }
 
     /// Puts together what the deciding attempts say: those up to the one that solved.
     fn outcome(self) -> Outcome<D> {
         let elapsed = self.clock.elapsed();
+        let interrupted = self.stop();
         let names = self.problem.primitives().iter().map(|p| p.name()).collect();
         let mut outcome = Outcome {
             solution: None,
-            stop: self.clock.stop().unwrap_or(Stop::IterationLimit),
+            stop: interrupted.unwrap_or(Stop::IterationLimit),
             accounts: Accounts::new(names),
             iterations: 0,
             nodes: 0,
@@ -245,6 +280,10 @@ impl<D: Domain> Shared<'_, D> {
                 outcome.solution = attempt.solution;
                 break;
             }
+        }
+        // The budget ended between two attempts.
+        if outcome.stop == Stop::Restart {
+            outcome.stop = interrupted.unwrap_or(outcome.stop);
         }
         outcome
     }

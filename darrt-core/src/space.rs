@@ -146,3 +146,28 @@ pub trait ComponentSpace: Send + Sync {
         if groups.covers(self.groups()) { target.clone() } else { from.clone() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn group_sets_are_sets_of_at_most_32() {
+        assert_eq!(GroupSet::first(0), GroupSet::NONE);
+        assert_eq!(GroupSet::first(2), GroupSet::only(0).union(GroupSet::only(1)));
+        assert!(GroupSet::first(99).contains(31) && !GroupSet::first(99).contains(32));
+        assert!(GroupSet::only(32).is_empty() && GroupSet::only(31).shifted(1).is_empty());
+        assert_eq!(GroupSet::only(3).shifted(2).lowered(5), GroupSet::only(0));
+        assert!(GroupSet::only(3).shifted(32).is_empty() && GroupSet::only(3).lowered(32).is_empty());
+        assert!(GroupSet::first(3).covers(GroupSet::only(2)) && !GroupSet::only(2).covers(GroupSet::first(3)));
+        assert_eq!(GroupSet::first(3).intersection(GroupSet::only(2)), GroupSet::only(2));
+    }
+
+    #[test]
+    fn a_fixed_component_never_moves() {
+        let rock = Fixed::new("rock");
+        assert_eq!(rock.dimension(), 0);
+        assert!(rock.contains(&"rock") && !rock.contains(&"paper"));
+        assert_eq!(rock.sample(&mut crate::random::stream(0, 0, 0, crate::random::Purpose::Sample)), "rock");
+    }
+}

@@ -70,6 +70,13 @@ impl<D: Domain> Tree<D> {
         Some(id)
     }
 
+    /// Takes back the node that was added last; the root stays.
+    pub fn remove_last(&mut self) {
+        if self.nodes.len() > 1 {
+            self.nodes.pop();
+        }
+    }
+
     /// A node; `None` if the id belongs to another tree.
     pub fn node(&self, id: NodeId) -> Option<&Node<D>> {
         self.nodes.get(id.index())

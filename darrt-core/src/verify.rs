@@ -99,11 +99,18 @@ impl<V> Replay<V> {
     {
         let refuse = |at: f64, reason: String| Refusal { step: Some(index), at, reason };
         let Some(step) = plan.steps().get(index) else { return Ok(before.clone()) };
+        let length = step.instance.motion.length();
+        if !(length.is_finite() && length >= 0.0) {
+            return Err(refuse(0.0, format!("its length is {length} m, but must be finite and not negative")));
+        }
+        if !(step.until > 0.0 && step.until <= 1.0) {
+            return Err(refuse(0.0, format!("it runs until {}, but must end in (0, 1]", step.until)));
+        }
         let entry = step.instance.at(m, 0.0, before);
         if entry != *before {
             return Err(refuse(0.0, format!("it starts at {entry:?}, but the step before ends at {before:?}")));
         }
-        let count = (step.instance.motion.length() * step.until / self.spacing_m).ceil().clamp(1.0, 1e7);
+        let count = (length * step.until / self.spacing_m).ceil().clamp(1.0, 1e7);
         let mut state = before.clone();
         let mut i = 0.0;
         while i < count {

@@ -1,1 +1,45 @@
-//! placeholder
+//! Shapes, scenes, support surfaces, collision and clearance for manipulation planning.
+//!
+//! | question | file |
+//! |---|---|
+//! | what solids are there, and how big are they? | [`shape`], [`hull`], [`mesh`] |
+//! | what is a rigid body, what stands around? | [`body`], [`scene`] |
+//! | what do things rest on, and where is its edge? | [`support`] |
+//! | which bodies may touch, and why? | [`allowed`], [`body_set`] |
+//! | how far may the planner go? | [`collide`] (cheap lower bounds, on top of the private `batch`) |
+//! | how far apart are two bodies exactly, and where? | [`clearance`] |
+//! | what does an independent judge say? | [`oracle`] |
+//!
+//! Metres and radians throughout; the world's floor is the plane z = 0 with z up; poses read `world_from_body`. nalgebra
+//! types at every public surface: parry and glam stay inside.
+
+pub mod allowed;
+mod batch;
+pub mod body;
+pub mod body_set;
+mod check;
+pub mod clearance;
+pub mod collide;
+mod convert;
+pub mod error;
+pub mod hull;
+pub mod mesh;
+mod narrow;
+pub mod oracle;
+mod place;
+pub mod scene;
+pub mod shape;
+pub mod support;
+
+pub use allowed::{AllowedContact, AllowedContacts, ContactReason};
+pub use body::{Body, Part};
+pub use body_set::{BodyIndex, BodySet, MAXIMUM_BODIES};
+pub use check::{MAXIMUM_LENGTH, MINIMUM_LENGTH};
+pub use clearance::Clearance;
+pub use collide::{CollisionModel, CollisionModelBuilder, Hit, Query, Scratch};
+pub use error::GeomError;
+pub use hull::ConvexHull;
+pub use mesh::TriangleMesh;
+pub use scene::{FixedBody, Scene};
+pub use shape::Shape;
+pub use support::{EdgePoint, SupportSurface};

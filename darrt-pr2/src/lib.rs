@@ -1,10 +1,38 @@
-//! DARRT on the PR2.
+//! DARRT on the PR2: kinematics, the paper's eight primitives, its problems, the command line.
+//!
+//! | question | file |
+//! |---|---|
+//! | what is the PR2? | [`model`], [`arm`], [`forward`], [`gripper`], [`postures`], [`self_collision`] |
+//! | how does it plan? | [`robot`], [`world`], [`planning`] |
+//! | the primitives of paper section 5.1 | [`arm_transit`], [`straight_line_arm_transit`], [`arm_rigid_transfer`], [`base_transit`], [`base_rigid_transfer`], [`pick`](mod@pick), [`place`](mod@place), [`push`](mod@push) |
+//! | what is a problem? | [`problem_file`], [`schema`], [`grasp_families`], [`goal_check`] |
+//! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
+//! | what does a person see? | [`cli`], [`picture`] |
 
 pub mod arm;
+pub mod arm_rigid_transfer;
+pub mod arm_transit;
+pub mod base_rigid_transfer;
+pub mod base_transit;
+pub mod cli;
+pub mod export;
 pub mod forward;
+pub mod goal_check;
+pub mod grasp_families;
 pub mod gripper;
 pub mod model;
+pub mod pick;
+pub mod picture;
+pub mod place;
+pub mod plan_file;
+pub mod planning;
+pub mod planning_error;
 pub mod postures;
 pub mod problem_file;
+pub mod push;
+pub mod robot;
 pub mod schema;
 pub mod self_collision;
+pub mod straight_line_arm_transit;
+pub mod verify;
+pub mod world;

@@ -12,6 +12,7 @@ pub mod error;
 pub mod geometry;
 pub mod goal;
 pub mod grasps;
+pub mod layout;
 pub mod nesting;
 pub mod object;
 pub mod primitive_name;
@@ -30,9 +31,7 @@ pub use grasps::{GraspFamily, OverheadGrasp, RimGrasp, SideGrasp};
 pub use object::{Friction, Object, Symmetry};
 pub use primitive_name::PrimitiveName;
 pub use robot::{ArmSide, Limits, Robot, RobotModel};
-pub use settings::{
-    Budget, DistanceName, EdgeRule, PaperFigures, Place, Push, SamplerName, Sampling, Transit,
-};
+pub use settings::{Budget, DistanceName, EdgeRule, PaperFigures, Place, Push, SamplerName, Sampling, Transit};
 pub use shape::ShapeSpec;
 pub use world::{Bounds, Obstacle, Surface};
 
@@ -120,9 +119,7 @@ impl ProblemFile {
 
     /// The fixed body called `name`.
     pub fn obstacle(&self, name: &str) -> Option<&Obstacle> {
-        self.obstacles
-            .iter()
-            .find(|obstacle| obstacle.name == name)
+        self.obstacles.iter().find(|obstacle| obstacle.name == name)
     }
 
     /// Whether the planner may use `primitive`.

@@ -4,6 +4,8 @@
 //! the search (no reachable contact, no room at an edge) are not errors: the functions concerned
 //! answer with `Option` or a small `Copy` enum of their own.
 
+use darrt_geom::GeomError;
+
 /// A malformed input: a number out of range, an unknown name, an unreadable description.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -86,56 +88,33 @@ pub enum PrimitiveError {
         /// Where and why it failed, with the offending value.
         detail: String,
     },
+    /// A shape or surface was refused by the geometry crate.
+    #[error(transparent)]
+    Geometry(#[from] GeomError),
 }
 
 /// `value` when it is finite.
 pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, PrimitiveError> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(PrimitiveError::NotFinite { name, value })
-    }
+    if value.is_finite() { Ok(value) } else { Err(PrimitiveError::NotFinite { name, value }) }
 }
 
 /// `value` when it is finite and above zero.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, PrimitiveError> {
-    if finite(name, value)? > 0.0 {
-        Ok(value)
-    } else {
-        Err(PrimitiveError::NotPositive { name, value })
-    }
+    if finite(name, value)? > 0.0 { Ok(value) } else { Err(PrimitiveError::NotPositive { name, value }) }
 }
 
 /// `value` when it is finite and inside the closed range `[low, high]`.
-pub(crate) fn within(
-    name: &'static str,
-    value: f64,
-    low: f64,
-    high: f64,
-) -> Result<f64, PrimitiveError> {
+pub(crate) fn within(name: &'static str, value: f64, low: f64, high: f64) -> Result<f64, PrimitiveError> {
     if (low..=high).contains(&finite(name, value)?) {
         Ok(value)
     } else {
-        Err(PrimitiveError::OutOfRange {
-            name,
-            value,
-            low,
-            high,
-        })
+        Err(PrimitiveError::OutOfRange { name, value, low, high })
     }
 }
 
 /// `value` when it is finite, above zero and strictly below `bound`.
-pub(crate) fn positive_below(
-    name: &'static str,
-    value: f64,
-    bound: f64,
-) -> Result<f64, PrimitiveError> {
-    if positive(name, value)? < bound {
-        Ok(value)
-    } else {
-        Err(PrimitiveError::NotBelow { name, value, bound })
-    }
+pub(crate) fn positive_below(name: &'static str, value: f64, bound: f64) -> Result<f64, PrimitiveError> {
+    if positive(name, value)? < bound { Ok(value) } else { Err(PrimitiveError::NotBelow { name, value, bound }) }
 }
 
 #[cfg(test)]
@@ -145,22 +124,10 @@ mod tests {
     #[test]
     fn checks_name_the_value_and_the_bound() {
         assert_eq!(positive("mass", 0.5), Ok(0.5));
-        assert_eq!(
-            positive("mass", 0.0),
-            Err(PrimitiveError::NotPositive {
-                name: "mass",
-                value: 0.0
-            })
-        );
+        assert_eq!(positive("mass", 0.0), Err(PrimitiveError::NotPositive { name: "mass", value: 0.0 }));
         let nan = finite("mass", f64::NAN);
         assert!(matches!(nan, Err(PrimitiveError::NotFinite { .. })));
-        assert_eq!(
-            within("tilt", 2.0, -1.0, 1.0).unwrap_err().to_string(),
-            "tilt must lie in [-1, 1], found 2"
-        );
-        assert_eq!(
-            positive_below("gap", 0.3, 0.28).unwrap_err().to_string(),
-            "gap must be below 0.28, found 0.3"
-        );
+        assert_eq!(within("tilt", 2.0, -1.0, 1.0).unwrap_err().to_string(), "tilt must lie in [-1, 1], found 2");
+        assert_eq!(positive_below("gap", 0.3, 0.28).unwrap_err().to_string(), "gap must be below 0.28, found 0.3");
     }
 }

@@ -20,7 +20,7 @@ pub mod numeric_inverse;
 pub mod tree;
 pub mod urdf;
 
-pub use collision::{MeshPaths, NoMeshes, link_bodies};
+pub use collision::{link_bodies, mesh_folders, no_meshes};
 pub use jacobian::Chain;
 pub use limit::JointLimit;
 pub use numeric_inverse::{InverseOptions, NumericInverse};

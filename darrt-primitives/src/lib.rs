@@ -1,7 +1,30 @@
 //! Robot-independent building blocks for manipulation primitives.
+//!
+//! | question | file |
+//! |---|---|
+//! | what must a robot offer? | [`manipulator`], [`kinematics`] |
+//! | where can robot and objects be? | [`arm_space`], [`object_space`], [`tabletop`] |
+//! | what is held, what rests on what? | [`mode`] |
+//! | how do objects slide when pushed? | [`push`], [`contact`] |
+//! | how can an object be held? | [`grasp`] |
+//! | how does a wish become motions? | [`action`], [`arm_motion`] |
+//! | what is in the way? | [`validity`] |
+//! | what is asked for, and what is a goal? | [`wish`], [`goal`] |
+//!
+//! Nothing here names a robot.
 
+pub mod action;
+pub mod arm_motion;
+pub mod arm_space;
 pub mod contact;
 pub mod error;
+pub mod goal;
 pub mod grasp;
 pub mod kinematics;
+pub mod manipulator;
+pub mod mode;
+pub mod object_space;
 pub mod push;
+pub mod wish;
+pub mod tabletop;
+pub mod validity;

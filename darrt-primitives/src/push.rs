@@ -66,10 +66,7 @@ pub struct Wrench {
 impl Wrench {
     /// The wrench of a force applied at `point` (object frame, metres).
     pub fn of_force_at(point: &Vector2<f64>, force: Vector2<f64>) -> Self {
-        Self {
-            force,
-            moment: cross(point, &force),
-        }
+        Self { force, moment: cross(point, &force) }
     }
 }
 
@@ -145,16 +142,10 @@ mod tests {
 
     #[test]
     fn the_centre_of_rotation_stands_still() {
-        let twist = Twist {
-            linear: Vector2::new(0.3, -0.7),
-            angular: -2.0,
-        };
+        let twist = Twist { linear: Vector2::new(0.3, -0.7), angular: -2.0 };
         let cor = twist.center_of_rotation().unwrap();
         assert!(twist.velocity_at(&cor).norm() < 1e-15);
-        let slide = Twist {
-            linear: Vector2::x(),
-            angular: 0.0,
-        };
+        let slide = Twist { linear: Vector2::x(), angular: 0.0 };
         assert_eq!(slide.center_of_rotation(), None);
     }
 }

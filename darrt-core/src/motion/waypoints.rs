@@ -46,8 +46,17 @@ impl<D: Domain> Motion<D> for Waypoints<D> {
         self.length_m
     }
 
+    fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
     fn at_into(&self, m: &D, t: f64, out: &mut State<D>) {
         let t = t.clamp(0.0, 1.0);
+        if let (true, Some(first)) = (t <= 0.0, self.states.first()) {
+            // A first leg of no length would hide its state (and mode) behind the next.
+            out.clone_from(first);
+            return;
+        }
         let leg = self.knots.partition_point(|k| *k <= t).clamp(1, self.knots.len() - 1);
         let (Some(a), Some(b)) = (self.states.get(leg - 1), self.states.get(leg)) else { return };
         let (Some(start), Some(end)) = (self.knots.get(leg - 1), self.knots.get(leg)) else { return };
@@ -59,14 +68,7 @@ impl<D: Domain> Motion<D> for Waypoints<D> {
                 *slot = space.interpolate(p, q, s);
             }
         }
-        let mode = if t <= 0.0 {
-            &a.mode
-        } else if t >= 1.0 {
-            &b.mode
-        } else {
-            &self.during
-        };
-        out.mode.clone_from(mode);
+        out.mode.clone_from(if t >= 1.0 { &b.mode } else { &self.during });
     }
 }
 

@@ -4,12 +4,13 @@ use crate::domain::Domain;
 use crate::state::State;
 use crate::tree::{NodeId, Tree};
 
-/// The node whose state has the least `measure`; the lowest index wins a tie. `None` for an empty tree.
+/// The node whose state has the least `measure`; the lowest index wins a tie, and a measure that is not a
+/// number loses against every other. `None` for an empty tree.
 pub fn nearest_by<D: Domain>(tree: &Tree<D>, measure: impl Fn(&State<D>) -> f64) -> Option<NodeId> {
     let mut best: Option<(NodeId, f64)> = None;
     for (id, node) in tree.iter() {
         let d = measure(&node.state);
-        if best.is_none_or(|(_, least)| d < least) {
+        if best.is_none_or(|(_, least)| d < least || (least.is_nan() && !d.is_nan())) {
             best = Some((id, d));
         }
     }

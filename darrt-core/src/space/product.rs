@@ -71,3 +71,49 @@ impl<A: ComponentSpace, B: ComponentSpace> ComponentSpace for Product<A, B> {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Fixed, RealBox, Se2};
+
+    type BaseArmTool = Product<Product<Se2, RealBox<7>>, Fixed<u8>>;
+
+    fn robot() -> BaseArmTool {
+        let base = Se2::new([0.0; 2], [5.0; 2], 0.5).unwrap();
+        let arm = RealBox::new([-3.0; 7], [3.0; 7]).unwrap();
+        Product::new(Product::new(base, arm), Fixed::new(1))
+    }
+
+    #[test]
+    fn groups_of_nested_products_line_up() {
+        assert_eq!(robot().groups(), GroupSet::first(3));
+        assert_eq!(robot().dimension(), 10);
+    }
+
+    #[test]
+    fn an_overlay_takes_the_named_groups_only() {
+        let from = (([1.0, 1.0, 0.0], [0.0; 7]), 1);
+        let to = (([2.0, 2.0, 1.0], [1.0; 7]), 2);
+        for (groups, expected) in [
+            (GroupSet::NONE, from),
+            (GroupSet::only(0), ((to.0.0, from.0.1), 1)),
+            (GroupSet::only(1), ((from.0.0, to.0.1), 1)),
+            (GroupSet::only(2), (from.0, 2)),
+            (GroupSet::first(2), (to.0, 1)),
+            (GroupSet::first(3), to),
+        ] {
+            assert_eq!(robot().overlay(&from, &to, groups), expected, "{groups:?}");
+        }
+    }
+
+    #[test]
+    fn distances_add_and_ends_are_exact() {
+        let a = (([1.0, 1.0, 0.0], [0.0; 7]), 1);
+        let b = (([1.0, 2.0, 1.0], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 1);
+        assert!((robot().distance(&a, &b) - 2.5).abs() < 1e-12);
+        assert_eq!(robot().interpolate(&a, &b, 0.0), a);
+        assert_eq!(robot().interpolate(&a, &b, 1.0), b);
+        assert!(robot().contains(&a) && !robot().contains(&(a.0, 2)));
+    }
+}

@@ -17,7 +17,7 @@ impl<const N: usize> RealBox<N> {
     /// A box with weight 1 on every axis.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if a bound is not finite or `lower > upper` on some axis.
+    /// [`Error::Parameter`] if a bound is not finite, `lower > upper` on some axis, or the diagonal overflows.
     pub fn new(lower: [f64; N], upper: [f64; N]) -> Result<Self, Error> {
         Self::weighted(lower, upper, [1.0; N])
     }
@@ -25,7 +25,8 @@ impl<const N: usize> RealBox<N> {
     /// A box whose distance is the Euclidean norm of `weight_i * (a_i - b_i)`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if a bound is not finite, `lower > upper`, or a weight is not positive.
+    /// [`Error::Parameter`] if a bound is not finite, `lower > upper`, a weight is not positive, or the
+    /// diagonal overflows.
     pub fn weighted(lower: [f64; N], upper: [f64; N], weight: [f64; N]) -> Result<Self, Error> {
         for (i, ((l, u), w)) in lower.iter().zip(&upper).zip(&weight).enumerate() {
             crate::error::in_range(
@@ -44,7 +45,11 @@ impl<const N: usize> RealBox<N> {
                 "finite and positive",
             )?;
         }
-        Ok(Self { lower, upper, weight })
+        let space = Self { lower, upper, weight };
+        // Also guards the width of every axis against overflow.
+        let diagonal = space.distance(&lower, &upper);
+        crate::error::in_range("diagonal of the box", diagonal, 0.0, f64::MAX, "finite")?;
+        Ok(space)
     }
 
     /// Lower bounds.
@@ -75,14 +80,60 @@ impl<const N: usize> ComponentSpace for RealBox<N> {
     }
 
     fn interpolate(&self, a: &[f64; N], b: &[f64; N], t: f64) -> [f64; N] {
+        if t <= 0.0 {
+            return *a;
+        }
         if t >= 1.0 {
             return *b;
         }
-        // Clamped: rounding must not leave the interval between the ends.
-        std::array::from_fn(|i| (a[i] + (b[i] - a[i]) * t).clamp(a[i].min(b[i]), a[i].max(b[i])))
+        // Rounding must not leave the interval between the ends. (Not `clamp`, which panics on NaN.)
+        std::array::from_fn(|i| (a[i] + (b[i] - a[i]) * t).max(a[i].min(b[i])).min(a[i].max(b[i])))
     }
 
     fn sample(&self, rng: &mut dyn Rng) -> [f64; N] {
         std::array::from_fn(|i| rng.random_range(self.lower[i]..=self.upper[i]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Purpose, stream};
+
+    #[test]
+    fn distance_is_weighted() {
+        let space = RealBox::weighted([0.0; 2], [10.0; 2], [1.0, 2.0]).unwrap();
+        assert_eq!(space.distance(&[0.0, 0.0], &[3.0, 2.0]), 5.0);
+    }
+
+    #[test]
+    fn ends_are_kept_bit_for_bit_and_the_middle_stays_between() {
+        let space = RealBox::new([-1e3; 2], [1e3; 2]).unwrap();
+        let (a, b) = ([-0.0, 0.1], [999.9, 0.1]);
+        assert!(space.interpolate(&a, &b, 0.0)[0].is_sign_negative());
+        assert_eq!(space.interpolate(&a, &b, 1.0), b);
+        for i in 0..=1000_u16 {
+            let [x, y] = space.interpolate(&a, &b, f64::from(i) / 1000.0);
+            assert!((0.0..=999.9).contains(&x) && y == 0.1);
+        }
+    }
+
+    #[test]
+    fn not_a_number_is_outside_and_does_no_harm() {
+        let space = RealBox::new([0.0; 1], [1.0; 1]).unwrap();
+        assert!(!space.contains(&[f64::NAN]));
+        for t in [0.0, 0.5, 1.0, f64::NAN] {
+            let _ = space.interpolate(&[f64::NAN], &[f64::NAN], t);
+            let _ = space.interpolate(&[0.5], &[f64::INFINITY], t);
+        }
+    }
+
+    #[test]
+    fn samples_fill_the_box_and_a_box_of_one_point_gives_that_point() {
+        let mut rng = stream(0, 0, 0, Purpose::Sample);
+        let space = RealBox::new([-2.0, 5.0], [3.0, 5.0]).unwrap();
+        let samples: Vec<_> = (0..1000).map(|_| space.sample(&mut rng)).collect();
+        assert!(samples.iter().all(|q| space.contains(q) && q[1] == 5.0));
+        assert!(samples.iter().any(|q| q[0] < -1.9) && samples.iter().any(|q| q[0] > 2.9));
     }
 }

@@ -60,3 +60,30 @@ impl ComponentSpace for Se2 {
         [x, y, self.heading.sample(rng)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn distance_adds_travel_and_turn() {
+        let plane = Se2::new([-1.0; 2], [5.0; 2], 0.5).unwrap();
+        assert!((plane.distance(&[0.0, 0.0, 3.0], &[3.0, 4.0, -3.0]) - (5.0 + 0.5 * (2.0 * PI - 6.0))).abs() < 1e-12);
+        assert!(!plane.contains(&[0.0, 0.0, 3.2]) && !plane.contains(&[6.0, 0.0, 0.0]));
+        assert!(!plane.contains(&[f64::NAN, 0.0, 0.0]) && !plane.contains(&[0.0, 0.0, f64::NAN]));
+    }
+
+    #[test]
+    fn the_heading_takes_the_short_way_and_the_ends_are_exact() {
+        let plane = Se2::new([-1.0; 2], [5.0; 2], 0.5).unwrap();
+        let (a, b) = ([0.1, 0.2, 3.1], [0.7, -0.3, -3.1]);
+        assert_eq!(plane.interpolate(&a, &b, 0.0), a);
+        assert_eq!(plane.interpolate(&a, &b, 1.0), b);
+        for i in 0..=10_u8 {
+            let [_, _, yaw] = plane.interpolate(&a, &b, f64::from(i) / 10.0);
+            assert!(yaw.abs() > 3.09, "{yaw} goes the long way");
+        }
+    }
+}

@@ -13,13 +13,16 @@ pub struct Se3 {
     metres_per_rad: f64,
 }
 
-/// Angle of the shortest rotation from `a` to `b`, in `[0, pi]`; blind to the sign of the quaternions.
+/// Angle of the shortest rotation from `a` to `b`, in `[0, pi]`; blind to the sign of the quaternions,
+/// and symmetric and zero for equal rotations without rounding.
+///
+/// # Source
+/// Kahan's angle between unit vectors, `2 atan2(|a - b|, |a + b|)`; rotations turn by twice the angle
+/// between their quaternions.
 pub fn angle_between(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> f64 {
-    if a == b {
-        return 0.0;
-    }
-    let q = a.conjugate().into_inner() * b.into_inner();
-    2.0 * q.imag().norm().atan2(q.w.abs())
+    let apart = (a.into_inner() - b.into_inner()).norm();
+    let opposite = (a.into_inner() + b.into_inner()).norm();
+    4.0 * apart.min(opposite).atan2(apart.max(opposite))
 }
 
 /// A rotation drawn uniformly.
@@ -85,5 +88,92 @@ impl ComponentSpace for Se3 {
     fn sample(&self, rng: &mut dyn Rng) -> Isometry3<f64> {
         let position = self.position.sample(rng);
         Isometry3::from_parts(Translation3::from(position), uniform_rotation(rng))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::random::{Purpose, stream};
+
+    fn space() -> Se3 {
+        Se3::new([-1.0; 3], [1.0; 3], 0.3).unwrap()
+    }
+
+    fn turned(axis: Vector3<f64>, angle: f64) -> UnitQuaternion<f64> {
+        UnitQuaternion::from_scaled_axis(axis * angle)
+    }
+
+    fn opposite(q: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+        UnitQuaternion::new_unchecked(-q.into_inner())
+    }
+
+    #[test]
+    fn angles_are_exact_from_tiny_to_a_half_turn() {
+        let a = turned(Vector3::new(1.0, 2.0, 3.0), 0.4);
+        for angle in [0.0, 1e-9, 1e-3, FRAC_PI_2, 3.0, PI] {
+            let b = a * turned(Vector3::y(), angle);
+            assert!((angle_between(&a, &b) - angle).abs() < 1e-14 + 1e-7 * angle.min(1e-8), "{angle}");
+            assert_eq!(angle_between(&a, &b), angle_between(&b, &a));
+            assert!((angle_between(&opposite(&a), &b) - angle).abs() < 1e-14);
+        }
+        assert_eq!(angle_between(&a, &a), 0.0);
+        assert_eq!(angle_between(&a, &opposite(&a)), 0.0);
+        assert!((angle_between(&a, &(a * turned(Vector3::x(), 3.5))) - (2.0 * PI - 3.5)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn quaternions_of_either_sign_interpolate_the_short_way() {
+        let a = Isometry3::from_parts(Translation3::identity(), turned(Vector3::z(), 0.2));
+        let b = Isometry3::from_parts(Translation3::new(0.5, 0.0, 0.0), turned(Vector3::z(), 0.8));
+        let flipped = Isometry3::from_parts(b.translation, opposite(&b.rotation));
+        for b in [b, flipped] {
+            let half = space().interpolate(&a, &b, 0.5);
+            assert!(angle_between(&half.rotation, &turned(Vector3::z(), 0.5)) < 1e-12);
+            assert_eq!(space().interpolate(&a, &b, 0.0), a);
+            assert_eq!(space().interpolate(&a, &b, 1.0), b);
+            assert_eq!(space().interpolate(&a, &b, 1.0).rotation.w.to_bits(), b.rotation.w.to_bits());
+        }
+    }
+
+    #[test]
+    fn the_same_rotation_with_the_other_sign_stays_put() {
+        let a = Isometry3::from_parts(Translation3::identity(), turned(Vector3::x(), 1.0));
+        let b = Isometry3::from_parts(Translation3::identity(), opposite(&a.rotation));
+        assert_eq!(space().distance(&a, &b), 0.0);
+        for i in 0..=8_u8 {
+            let q = space().interpolate(&a, &b, f64::from(i) / 8.0);
+            assert!(space().distance(&a, &q) < 1e-12 && space().contains(&q));
+        }
+    }
+
+    #[test]
+    fn a_half_turn_has_some_way_and_keeps_to_it() {
+        let a = Isometry3::identity();
+        let b = Isometry3::from_parts(Translation3::identity(), turned(Vector3::z(), PI));
+        let mut last = 0.0;
+        for i in 0..=20_u8 {
+            let q = space().interpolate(&a, &b, f64::from(i) / 20.0);
+            let turned = angle_between(&a.rotation, &q.rotation);
+            assert!(space().contains(&q) && turned >= last - 1e-12, "{turned} after {last}");
+            last = turned;
+        }
+        assert!((last - PI).abs() < 1e-12);
+    }
+
+    #[test]
+    fn random_rotations_are_rotations_and_spread_over_all_axes() {
+        let mut rng = stream(1, 0, 0, Purpose::Sample);
+        let mut mean = Vector3::zeros();
+        for _ in 0..4000 {
+            let q = space().sample(&mut rng);
+            assert!(space().contains(&q));
+            mean += q.rotation * Vector3::x() / 4000.0;
+        }
+        assert!(mean.norm() < 0.05, "{mean}");
     }
 }

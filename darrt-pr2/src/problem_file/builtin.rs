@@ -52,53 +52,13 @@ pub(super) fn unknown(name: &str) -> ProblemFileError {
 
 fn find(name: &str) -> Option<(&'static str, &'static str)> {
     let wanted = folded(name);
-    PROBLEMS
-        .into_iter()
-        .find(|(candidate, _)| folded(candidate) == wanted)
+    PROBLEMS.into_iter().find(|(candidate, _)| folded(candidate) == wanted)
 }
 
 /// Letters and digits only, in lower case: what the spellings of one name have in common.
 fn folded(name: &str) -> String {
-    name.chars()
-        .filter(char::is_ascii_alphanumeric)
-        .map(|c| c.to_ascii_lowercase())
-        .collect()
+    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_embedded_problem_is_valid_and_bears_its_name() {
-        for name in builtin_names() {
-            assert_eq!(builtin(name).unwrap().name, name);
-        }
-    }
-
-    #[test]
-    fn the_spellings_of_the_paper_are_accepted() {
-        for (spelling, name) in [
-            ("Plate1", "plate1"),
-            ("PLATE2", "plate2"),
-            ("Plate3 (No Place)", "plate3-no-place"),
-            ("Plate3-NoPlace", "plate3-no-place"),
-            ("Simple Plate", "simple-plate"),
-            ("simple_plate", "simple-plate"),
-            ("Bowl", "bowl"),
-        ] {
-            assert_eq!(canonical_name(spelling), Some(name));
-        }
-    }
-
-    #[test]
-    fn an_unknown_name_lists_all_and_the_nearest() {
-        let message = ProblemFile::open("plat2").unwrap_err().to_string();
-        assert!(message.contains("`plat2`"), "{message}");
-        assert!(message.contains("did you mean `plate2`?"), "{message}");
-        for name in builtin_names() {
-            assert!(message.contains(name), "{message}");
-        }
-        assert!(builtin_text("nothing").is_err());
-    }
-}
+mod tests;

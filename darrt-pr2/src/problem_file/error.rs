@@ -2,6 +2,7 @@
 
 use std::io;
 
+use darrt_geom::GeomError;
 use thiserror::Error;
 
 use super::suggest::{hint, listed};
@@ -76,7 +77,7 @@ pub enum ProblemFileError {
         /// Path of the key, such as `obstacle[3].shape.box.size[1]`; indices count from 0.
         key: String,
         /// The broken rule.
-        flaw: Flaw,
+        flaw: Box<Flaw>,
     },
     /// There is no embedded problem and no file of this name.
     #[error(
@@ -169,6 +170,9 @@ pub enum Flaw {
         /// The surface.
         surface: String,
     },
+    /// A shape, mesh or polygon that cannot be built.
+    #[error("cannot be built: {0}")]
+    Geometry(#[from] GeomError),
     /// Keys contradict each other, one is missing, or a value makes no sense with another.
     #[error("{0}")]
     Inconsistent(String),

@@ -113,9 +113,7 @@ impl ObjectGoal {
     pub fn target(&self) -> Option<GoalTarget<'_>> {
         match (self.on.as_deref(), self.at, &self.region, self.position) {
             (Some(surface), Some(at), None, None) => Some(GoalTarget::On { surface, at }),
-            (Some(surface), None, Some(region), None) => {
-                Some(GoalTarget::Within { surface, region })
-            }
+            (Some(surface), None, Some(region), None) => Some(GoalTarget::Within { surface, region }),
             (None, None, None, Some(position)) => Some(GoalTarget::At { position }),
             _ => None,
         }

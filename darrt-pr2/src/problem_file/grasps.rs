@@ -4,9 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A family of grasps that Pick may draw from.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum GraspFamily {
     /// The fingers straddle the rim of a plate, one above and one below, the hand points at the object's axis.
@@ -69,14 +67,7 @@ pub struct OverheadGrasp {
 
 impl Default for OverheadGrasp {
     fn default() -> Self {
-        Self {
-            tilts_deg: vec![0.0],
-            azimuths: 24,
-            insertion_m: 0.03,
-            opening_m: 0.05,
-            approach_m: 0.10,
-            lift_m: 0.10,
-        }
+        Self { tilts_deg: vec![0.0], azimuths: 24, insertion_m: 0.03, opening_m: 0.05, approach_m: 0.10, lift_m: 0.10 }
     }
 }
 
@@ -100,13 +91,6 @@ pub struct SideGrasp {
 
 impl Default for SideGrasp {
     fn default() -> Self {
-        Self {
-            tilts_deg: vec![0.0],
-            azimuths: 24,
-            insertion_m: 0.01,
-            opening_m: 0.088,
-            approach_m: 0.10,
-            lift_m: 0.10,
-        }
+        Self { tilts_deg: vec![0.0], azimuths: 24, insertion_m: 0.01, opening_m: 0.088, approach_m: 0.10, lift_m: 0.10 }
     }
 }

@@ -13,7 +13,10 @@ enum Inside {
     Plain,
     Comment,
     /// A string that ends with `quote`, three times if `long`; `escapes` when a backslash hides the next byte.
-    Text { quote: u8, long: bool },
+    Text {
+        quote: u8,
+        long: bool,
+    },
 }
 
 /// Checks that open brackets and braces plus the dots of the current key never exceed `limit`.

@@ -29,10 +29,7 @@ pub struct Friction {
 
 impl Default for Friction {
     fn default() -> Self {
-        Self {
-            table: 0.3,
-            fingers: 0.4,
-        }
+        Self { table: 0.3, fingers: 0.4 }
     }
 }
 

@@ -9,9 +9,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Source
 /// Section 5.1 of the paper.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 pub enum PrimitiveName {
     /// The arm moves in a straight line in joint space.
     #[serde(rename = "Arm-Transit")]

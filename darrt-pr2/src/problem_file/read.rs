@@ -67,6 +67,14 @@ impl ProblemFile {
         Err(builtin::unknown(name_or_path))
     }
 
+    /// The problem as a complete problem file, every default written out.
+    ///
+    /// # Errors
+    /// When a count exceeds what TOML can hold (2^63 - 1); no problem that was read from TOML has one.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string(self)
+    }
+
     /// Makes relative paths start at `folder`.
     fn resolve_paths(&mut self, folder: &Path) {
         let files = self
@@ -88,57 +96,33 @@ impl ProblemFile {
 
 /// Reads at most [`MAX_BYTES`] of text from a regular file.
 fn read_text(path: &Path, name: &str) -> Result<String, ProblemFileError> {
-    let io = |source| ProblemFileError::Io {
-        file: name.to_owned(),
-        source,
-    };
-    let too_large = |bytes| ProblemFileError::TooLarge {
-        file: name.to_owned(),
-        bytes,
-        limit: MAX_BYTES,
-    };
+    let io = |source| ProblemFileError::Io { file: name.to_owned(), source };
+    let too_large = |bytes| ProblemFileError::TooLarge { file: name.to_owned(), bytes, limit: MAX_BYTES };
     let metadata = std::fs::metadata(path).map_err(io)?;
     if !metadata.is_file() {
-        return Err(ProblemFileError::NotAFile {
-            file: name.to_owned(),
-        });
+        return Err(ProblemFileError::NotAFile { file: name.to_owned() });
     }
     if metadata.len() > MAX_BYTES {
         return Err(too_large(metadata.len()));
     }
     let mut bytes = Vec::new();
-    File::open(path)
-        .map_err(io)?
-        .take(MAX_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(io)?;
+    File::open(path).map_err(io)?.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large(bytes.len() as u64));
     }
-    String::from_utf8(bytes).map_err(|error| ProblemFileError::NotUtf8 {
-        file: name.to_owned(),
-        offset: error.utf8_error().valid_up_to(),
-    })
+    String::from_utf8(bytes)
+        .map_err(|error| ProblemFileError::NotUtf8 { file: name.to_owned(), offset: error.utf8_error().valid_up_to() })
 }
 
 /// Guards, TOML and defaults; no validation.
 fn parse(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileError> {
     let file = || source_name.to_owned();
     if text.len() as u64 > MAX_BYTES {
-        return Err(ProblemFileError::TooLarge {
-            file: file(),
-            bytes: text.len() as u64,
-            limit: MAX_BYTES,
-        });
+        return Err(ProblemFileError::TooLarge { file: file(), bytes: text.len() as u64, limit: MAX_BYTES });
     }
     check_nesting(text, MAX_NESTING).map_err(|too_deep| {
         let (line, column) = line_and_column(text, too_deep.offset);
-        ProblemFileError::TooDeep {
-            file: file(),
-            line,
-            column,
-            limit: MAX_NESTING,
-        }
+        ProblemFileError::TooDeep { file: file(), line, column, limit: MAX_NESTING }
     })?;
     let mut problem: ProblemFile = toml::from_str(text).map_err(|error| {
         let offset = error.span().map_or(0, |span| span.start);
@@ -175,4 +159,83 @@ fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let line = before.matches('\n').count() + 1;
     let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
     (line, column)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write as _;
+
+    fn message(text: &str) -> String {
+        ProblemFile::from_toml(text, "bad.toml").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn broken_toml_names_the_line_and_column() {
+        assert!(message("format = \"darrt-problem\"\nversion = = 1\n").starts_with("bad.toml:2:"));
+        assert!(message("\"é\" = 1\n").contains("bad.toml:1:1: unknown field `é`"));
+        assert!(message("").contains("missing field `format`"));
+    }
+
+    #[test]
+    fn deep_nesting_is_refused_before_parsing() {
+        let arrays = format!("name = {}", "[".repeat(10_000));
+        assert!(message(&arrays).contains("bad.toml:1:72: nested deeper than 64 levels"));
+        let dots = format!("a{} = 1", ".a".repeat(10_000));
+        assert!(message(&dots).contains("nested deeper than 64"));
+        let tables = format!("name = {}", "{a=".repeat(10_000));
+        assert!(message(&tables).contains("nested deeper than 64"));
+        // As deep as allowed, still no trouble for the stack.
+        let allowed = format!("name = {}1{}", "[".repeat(63), "]".repeat(63));
+        assert!(ProblemFile::from_toml(&allowed, "bad.toml").is_err());
+    }
+
+    #[test]
+    fn large_files_are_refused_by_their_size_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("large.toml");
+        // A sparse file: 100 MB that are never written.
+        File::create(&path).unwrap().set_len(100_000_000).unwrap();
+        let message = ProblemFile::read(&path).unwrap_err().to_string();
+        assert!(message.contains("large.toml"), "{message}");
+        assert!(message.contains("100000000") && message.contains("4194304"), "{message}");
+        let text = " ".repeat(usize::try_from(MAX_BYTES).unwrap() + 1);
+        assert!(self::tests::message(&text).contains("4194305"));
+    }
+
+    #[test]
+    fn missing_files_folders_and_binary_files_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("missing.toml");
+        assert!(matches!(ProblemFile::read(&missing), Err(ProblemFileError::Io { .. })));
+        assert!(matches!(ProblemFile::read(folder.path()), Err(ProblemFileError::NotAFile { .. })));
+        let binary = folder.path().join("binary.toml");
+        File::create(&binary).unwrap().write_all(b"abc\xff\xfe").unwrap();
+        assert!(matches!(ProblemFile::read(&binary), Err(ProblemFileError::NotUtf8 { offset: 3, .. })));
+    }
+
+    #[test]
+    fn meshes_are_found_beside_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mesh.toml");
+        let text = builtin::builtin_text("bowl").unwrap();
+        let mesh = "\n[[obstacle]]\nname = \"lamp\"\nshape = { mesh = { file = \"lamp.stl\" } }\nat = [0, 1, 0]\n";
+        std::fs::write(&path, format!("{text}{mesh}")).unwrap();
+        let problem = ProblemFile::read(&path).unwrap();
+        let ShapeSpec::Mesh { file, scale } = &problem.obstacle("lamp").unwrap().shape else {
+            panic!("the lamp is a mesh");
+        };
+        assert_eq!((file, *scale), (&folder.path().join("lamp.stl"), 1.0));
+        let message = problem.scene().unwrap_err().to_string();
+        assert!(message.contains("lamp.stl") && message.contains("obstacle["), "{message}");
+    }
+
+    #[test]
+    fn open_takes_built_in_names_and_paths() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("copy.toml");
+        std::fs::write(&path, builtin::builtin_text("plate2").unwrap()).unwrap();
+        let copy = ProblemFile::open(path.to_str().unwrap()).unwrap();
+        assert_eq!(copy, ProblemFile::open("Plate2").unwrap());
+    }
 }

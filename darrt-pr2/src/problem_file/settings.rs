@@ -65,11 +65,7 @@ pub struct Place {
 
 impl Default for Place {
     fn default() -> Self {
-        Self {
-            approach_directions: vec![[0.0, 0.0, -1.0]],
-            approach_m: 0.10,
-            retreat_m: 0.10,
-        }
+        Self { approach_directions: vec![[0.0, 0.0, -1.0]], approach_m: 0.10, retreat_m: 0.10 }
     }
 }
 
@@ -137,9 +133,7 @@ pub struct Transit {
 
 impl Default for Transit {
     fn default() -> Self {
-        Self {
-            postures: vec![super::robot::DEFAULT_POSTURE.to_owned()],
-        }
+        Self { postures: vec![super::robot::DEFAULT_POSTURE.to_owned()] }
     }
 }
 
@@ -164,12 +158,7 @@ pub struct Budget {
 
 impl Default for Budget {
     fn default() -> Self {
-        Self {
-            time_limit_s: 60.0,
-            iterations: None,
-            nodes: None,
-            restart_iterations: None,
-        }
+        Self { time_limit_s: 60.0, iterations: None, nodes: None, restart_iterations: None }
     }
 }
 

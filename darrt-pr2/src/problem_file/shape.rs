@@ -90,9 +90,9 @@ impl ShapeSpec {
         match self {
             Self::Box { size } => Some(size[2] / 2.0),
             Self::Sphere { radius } => Some(*radius),
-            Self::Cylinder { height, .. }
-            | Self::Capsule { height, .. }
-            | Self::Bowl { height, .. } => Some(height / 2.0),
+            Self::Cylinder { height, .. } | Self::Capsule { height, .. } | Self::Bowl { height, .. } => {
+                Some(height / 2.0)
+            }
             Self::Hull { points } => points.iter().map(|point| -point[2]).max_by(f64::total_cmp),
             Self::Mesh { .. } => None,
         }

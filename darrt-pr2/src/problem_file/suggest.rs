@@ -40,9 +40,7 @@ pub(crate) fn shown(text: &str) -> String {
 
 /// `; did you mean ...?` or nothing.
 pub(crate) fn hint(nearest: Option<&str>) -> String {
-    nearest.map_or_else(String::new, |name| {
-        format!(" (did you mean `{}`?)", shown(name))
-    })
+    nearest.map_or_else(String::new, |name| format!(" (did you mean `{}`?)", shown(name)))
 }
 
 /// The names in one line, shortened when there are many.
@@ -50,20 +48,22 @@ pub(crate) fn listed(names: &[String]) -> String {
     if names.is_empty() {
         return "none".to_owned();
     }
-    let mut line = names
-        .iter()
-        .take(MOST_LISTED)
-        .map(|name| shown(name))
-        .collect::<Vec<_>>()
-        .join(", ");
-    if names.len() > MOST_LISTED {
-        line.push_str(&format!(" and {} more", names.len() - MOST_LISTED));
+    let line = names.iter().take(MOST_LISTED).map(|name| shown(name)).collect::<Vec<_>>().join(", ");
+    match names.len().checked_sub(MOST_LISTED) {
+        None | Some(0) => line,
+        Some(more) => format!("{line} and {more} more"),
     }
-    line
 }
 
-/// Takes serde's "unknown field `x`, expected one of `a`, `b`" apart: the nearest of the expected names.
+/// Takes a message of the TOML reader apart: the nearest of the names that it expected.
+///
+/// There are two wordings: serde's "unknown field `x`, expected one of `a`, `b`", and the reader's own for the keys of a
+/// shape, "unexpected keys in table: x, available keys: a, b".
 pub(crate) fn nearest_expected(message: &str) -> Option<String> {
+    if let Some(keys) = message.strip_prefix("unexpected keys in table: ") {
+        let (found, expected) = keys.split_once(", available keys: ")?;
+        return nearest(found.split(", ").next()?, expected.split(", ")).map(str::to_owned);
+    }
     let (found, expected) = message.split_once(", expected ")?;
     if !found.starts_with("unknown ") {
         return None;
@@ -92,6 +92,8 @@ mod tests {
         assert_eq!(nearest_expected(many).as_deref(), Some("size"));
         let one = "unknown field `sise`, expected `size`";
         assert_eq!(nearest_expected(one).as_deref(), Some("size"));
+        let keys = "unexpected keys in table: hieght, x, available keys: radius, height";
+        assert_eq!(nearest_expected(keys).as_deref(), Some("height"));
         assert_eq!(nearest_expected("missing field `name`"), None);
         assert_eq!(nearest_expected("unknown field, expected "), None);
     }

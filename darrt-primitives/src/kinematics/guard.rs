@@ -26,19 +26,9 @@ pub const MAX_NAMESPACES: usize = 32;
 /// well-formed.
 pub fn check(text: &str) -> Result<(), UrdfError> {
     if text.len() > MAX_BYTES {
-        return Err(UrdfError::TooLarge {
-            what: "text",
-            bytes: text.len(),
-            bound: MAX_BYTES,
-        });
+        return Err(UrdfError::TooLarge { what: "text", bytes: text.len(), bound: MAX_BYTES });
     }
-    let mut scan = Scan {
-        bytes: text.as_bytes(),
-        at: 0,
-        depth: 0,
-        elements: 0,
-        namespaces: 0,
-    };
+    let mut scan = Scan { bytes: text.as_bytes(), at: 0, depth: 0, elements: 0, namespaces: 0 };
     scan.document()
 }
 
@@ -94,10 +84,8 @@ impl Scan<'_> {
         self.name("a closing tag without a name")?;
         self.blanks();
         self.expect(b'>', "a closing tag is not closed")?;
-        self.depth = self
-            .depth
-            .checked_sub(1)
-            .ok_or_else(|| self.malformed("a closing tag without its opening tag"))?;
+        self.depth =
+            self.depth.checked_sub(1).ok_or_else(|| self.malformed("a closing tag without its opening tag"))?;
         Ok(())
     }
 
@@ -108,11 +96,7 @@ impl Scan<'_> {
         bounded("elements", self.elements, MAX_ELEMENTS)?;
         loop {
             if self.at - start > MAX_TAG_BYTES {
-                return Err(UrdfError::TooLarge {
-                    what: "tag",
-                    bytes: self.at - start,
-                    bound: MAX_TAG_BYTES,
-                });
+                return Err(UrdfError::TooLarge { what: "tag", bytes: self.at - start, bound: MAX_TAG_BYTES });
             }
             let blank = self.blanks();
             match self.peek() {
@@ -120,11 +104,7 @@ impl Scan<'_> {
                     self.at += 1;
                     self.depth += 1;
                     return if self.depth > MAX_DEPTH {
-                        Err(UrdfError::TooDeep {
-                            depth: self.depth,
-                            bound: MAX_DEPTH,
-                            offset: start,
-                        })
+                        Err(UrdfError::TooDeep { depth: self.depth, bound: MAX_DEPTH, offset: start })
                     } else {
                         Ok(())
                     };
@@ -148,9 +128,8 @@ impl Scan<'_> {
         self.blanks();
         self.expect(b'=', "an attribute without a value")?;
         self.blanks();
-        let quote = match self.peek() {
-            Some(q @ (b'"' | b'\'')) => q,
-            _ => return Err(self.malformed("an attribute value without quotes")),
+        let Some(quote @ (b'"' | b'\'')) = self.peek() else {
+            return Err(self.malformed("an attribute value without quotes"));
         };
         self.at += 1;
         let end = self.rest().iter().position(|b| *b == quote || *b == b'<');
@@ -160,14 +139,12 @@ impl Scan<'_> {
 
     /// Skips a name: everything up to a blank or a delimiter.
     fn name(&mut self, complaint: &'static str) -> Result<(), UrdfError> {
-        let is_name = |b: &u8| !matches!(b, b' ' | b'\t' | b'\r' | b'\n' | b'<' | b'>' | b'/' | b'=' | b'"' | b'\'' | b'&' | b'!' | b'?');
+        let is_name = |b: &u8| {
+            !matches!(b, b' ' | b'\t' | b'\r' | b'\n' | b'<' | b'>' | b'/' | b'=' | b'"' | b'\'' | b'&' | b'!' | b'?')
+        };
         let length = self.rest().iter().take_while(|b| is_name(b)).count();
         self.at += length;
-        if length == 0 {
-            Err(self.malformed(complaint))
-        } else {
-            Ok(())
-        }
+        if length == 0 { Err(self.malformed(complaint)) } else { Ok(()) }
     }
 
     /// Skips blanks; whether there was one.
@@ -214,11 +191,7 @@ impl Scan<'_> {
 /// # Errors
 /// [`UrdfError::TooMany`] when `count` exceeds `bound`.
 pub(super) fn bounded(what: &'static str, count: usize, bound: usize) -> Result<(), UrdfError> {
-    if count > bound {
-        Err(UrdfError::TooMany { what, count, bound })
-    } else {
-        Ok(())
-    }
+    if count > bound { Err(UrdfError::TooMany { what, count, bound }) } else { Ok(()) }
 }
 
 #[cfg(test)]

@@ -13,10 +13,7 @@ pub struct JointLimit {
 
 impl JointLimit {
     /// No limit on either side: a continuous joint.
-    pub const UNLIMITED: Self = Self {
-        lower: f64::NEG_INFINITY,
-        upper: f64::INFINITY,
-    };
+    pub const UNLIMITED: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
 
     /// The interval `[lower, upper]`.
     pub const fn new(lower: f64, upper: f64) -> Self {
@@ -49,11 +46,7 @@ impl JointLimit {
         }
         let inside = |a: f64| self.lower - slack <= a && a <= self.upper + slack;
         let mirrored = if centred > 0.0 { -TAU } else { TAU };
-        [0.0, mirrored, -mirrored]
-            .into_iter()
-            .map(|turn| centred + turn)
-            .find(|a| inside(*a))
-            .map(|a| self.clamp(a))
+        [0.0, mirrored, -mirrored].into_iter().map(|turn| centred + turn).find(|a| inside(*a)).map(|a| self.clamp(a))
     }
 }
 

@@ -34,18 +34,10 @@ impl PointContact {
     ///
     /// # Errors
     /// When a coordinate of `point` is not finite.
-    pub fn new(
-        point: Vector2<f64>,
-        normal: Unit<Vector2<f64>>,
-        friction: Friction,
-    ) -> Result<Self, PrimitiveError> {
+    pub fn new(point: Vector2<f64>, normal: Unit<Vector2<f64>>, friction: Friction) -> Result<Self, PrimitiveError> {
         finite("contact point x", point.x)?;
         finite("contact point y", point.y)?;
-        Ok(Self {
-            point,
-            normal,
-            friction,
-        })
+        Ok(Self { point, normal, friction })
     }
 
     /// A contact on the rim of a disc whose inward normal has the given `azimuth` (radians).
@@ -82,8 +74,7 @@ impl PointContact {
     /// The wrench of unit normal force with `share` (-1 to 1) of the available friction toward the
     /// tangent.
     pub fn wrench(&self, share: f64) -> Wrench {
-        let force =
-            self.normal.into_inner() + share * self.friction.coefficient() * self.tangent();
+        let force = self.normal.into_inner() + share * self.friction.coefficient() * self.tangent();
         Wrench::of_force_at(&self.point, force)
     }
 
@@ -91,11 +82,7 @@ impl PointContact {
     ///
     /// # Source
     /// Lynch, Maekawa, Tanie 1992.
-    pub fn sticking_force(
-        &self,
-        pressure: PressureConstant,
-        velocity: &Vector2<f64>,
-    ) -> Vector2<f64> {
+    pub fn sticking_force(&self, pressure: PressureConstant, velocity: &Vector2<f64>) -> Vector2<f64> {
         let (c2, r) = (pressure.squared(), &self.point);
         let scale = 1.0 / (c2 + r.norm_squared());
         (c2 * velocity + r * r.dot(velocity)) * scale
@@ -107,8 +94,7 @@ impl PointContact {
     pub fn sticks(&self, pressure: PressureConstant, velocity: &Vector2<f64>) -> bool {
         let force = self.sticking_force(pressure, velocity);
         let along = force.dot(&self.normal);
-        velocity.dot(&self.normal) > 0.0
-            && force.dot(&self.tangent()).abs() <= self.friction.coefficient() * along
+        velocity.dot(&self.normal) > 0.0 && force.dot(&self.tangent()).abs() <= self.friction.coefficient() * along
     }
 
     /// The motion cone of this contact.
@@ -117,10 +103,7 @@ impl PointContact {
             let wrench = self.wrench(share);
             pressure.twist_of(&wrench).velocity_at(&self.point)
         };
-        MotionCone {
-            left: edge(1.0),
-            right: edge(-1.0),
-        }
+        MotionCone { left: edge(1.0), right: edge(-1.0) }
     }
 
     /// Which way the object turns when pushed along `direction`.
@@ -132,11 +115,7 @@ impl PointContact {
     /// # Source
     /// Mason 1986, voting theorem.
     pub fn rotation(&self, direction: &Vector2<f64>) -> Rotation {
-        let rays = [
-            self.wrench(1.0).force,
-            self.wrench(-1.0).force,
-            *direction,
-        ];
+        let rays = [self.wrench(1.0).force, self.wrench(-1.0).force, *direction];
         let votes = rays.map(|ray| cross(&self.point, &ray));
         let positive = votes.iter().filter(|vote| **vote > 0.0).count();
         let negative = votes.iter().filter(|vote| **vote < 0.0).count();
@@ -163,9 +142,7 @@ impl MotionCone {
     /// Is `velocity` inside the cone or on its border?
     pub fn contains(&self, velocity: &Vector2<f64>) -> bool {
         let middle = self.left.normalize() + self.right.normalize();
-        cross(&self.right, velocity) >= 0.0
-            && cross(velocity, &self.left) >= 0.0
-            && velocity.dot(&middle) > 0.0
+        cross(&self.right, velocity) >= 0.0 && cross(velocity, &self.left) >= 0.0 && velocity.dot(&middle) > 0.0
     }
 
     /// Half of the angle between the edges, radians.
@@ -178,11 +155,7 @@ impl MotionCone {
 ///
 /// # Errors
 /// When `radius` is not finite and positive.
-pub fn disc_half_angle(
-    radius: f64,
-    pressure: PressureConstant,
-    friction: Friction,
-) -> Result<f64, PrimitiveError> {
+pub fn disc_half_angle(radius: f64, pressure: PressureConstant, friction: Friction) -> Result<f64, PrimitiveError> {
     let radius = positive("disc radius", radius)?;
     let gain = 1.0 + radius * radius / pressure.squared();
     Ok((friction.coefficient() * gain).atan())
@@ -201,11 +174,7 @@ mod tests {
     fn half_angles_of_a_disc() {
         let uniform = PressureConstant::uniform_disc(0.13).unwrap();
         let rim = PressureConstant::rim(0.13).unwrap();
-        for (friction, on_disc, on_rim) in [
-            (0.1, 18.004, 11.310),
-            (0.3, 44.275, 30.964),
-            (0.5, 58.393, 45.000),
-        ] {
+        for (friction, on_disc, on_rim) in [(0.1, 18.004, 11.310), (0.3, 44.275, 30.964), (0.5, 58.393, 45.000)] {
             for (pressure, expected) in [(uniform, on_disc), (rim, on_rim)] {
                 let closed = disc_half_angle(0.13, pressure, mu(friction)).unwrap();
                 assert!((closed.to_degrees() - expected).abs() < 5.1e-4, "{closed}");

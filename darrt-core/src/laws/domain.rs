@@ -1,0 +1,78 @@
+//! Laws of [`Domain`], and those of its component spaces by name.
+
+use crate::domain::Domain;
+use crate::state::{ComponentId, ObjectId, State};
+
+use super::space::{SpaceClaims, check_component_space};
+use super::{Broken, equal, measure};
+
+/// As many objects in every state as in the domain.
+pub const COUNT: &str = "domain.count: a state has one configuration per object of the domain";
+/// Reach is a measure.
+pub const REACH: &str = "domain.reach: reach is finite and not negative";
+/// Hop is a measure.
+pub const HOP: &str = "domain.hop: hop is finite and not negative";
+/// Names tell the components apart.
+pub const NAMES: &str = "domain.names: every component has a name of its own";
+
+/// The laws of this file.
+pub const LAWS: &[&str] = &[COUNT, REACH, HOP, NAMES];
+
+/// The laws of a domain and of all its component spaces, for three states, two parameters in `[0, 1]` and
+/// a seed.
+///
+/// # Errors
+/// The first law that is [`Broken`], with the name of the component.
+pub fn check_domain<D: Domain>(
+    m: &D,
+    claims: &SpaceClaims,
+    states: [&State<D>; 3],
+    ts: [f64; 2],
+    seed: u64,
+) -> Result<(), Broken> {
+    let [a, b, c] = states;
+    let check = || {
+        for state in states {
+            equal(COUNT, &state.objects.len(), &m.objects().len())?;
+        }
+        let robot = check_component_space(m.robot(), claims, [&a.robot, &b.robot, &c.robot], ts, seed);
+        robot.map_err(|broken| broken.of(m.component_name(ComponentId::Robot)))?;
+        for (i, space) in m.objects().iter().enumerate() {
+            let id = ObjectId::new(i);
+            let (Some(p), Some(q), Some(r)) = (a.object(id), b.object(id), c.object(id)) else { continue };
+            check_component_space(space, claims, [p, q, r], ts, seed)
+                .map_err(|broken| broken.of(m.component_name(ComponentId::Object(id))))?;
+        }
+        names(m)?;
+        travel(m, a, b)
+    };
+    check().map_err(|broken| {
+        broken.replayed_by(|| format!("check_domain({claims:?}, [&{a:?}, &{b:?}, &{c:?}], {ts:?}, {seed})"))
+    })
+}
+
+fn names<D: Domain>(m: &D) -> Result<(), Broken> {
+    let objects = (0..m.objects().len()).map(|i| ComponentId::Object(ObjectId::new(i)));
+    let mut seen: Vec<String> = Vec::new();
+    for component in std::iter::once(ComponentId::Robot).chain(objects) {
+        let name = m.component_name(component).into_owned();
+        if name.is_empty() || seen.contains(&name) {
+            return Err(Broken::new(NAMES, format!("{name:?}"), format!("none of {seen:?}")));
+        }
+        seen.push(name);
+    }
+    Ok(())
+}
+
+fn travel<D: Domain>(m: &D, a: &State<D>, b: &State<D>) -> Result<(), Broken> {
+    for (i, p) in a.objects.iter().enumerate() {
+        let id = ObjectId::new(i);
+        let of = |broken: Broken| broken.of(m.component_name(ComponentId::Object(id)));
+        measure(REACH, m.reach(&a.robot, id, p)).map_err(of)?;
+        measure(REACH, m.reach(&b.robot, id, p)).map_err(of)?;
+        for (j, q) in b.objects.iter().enumerate() {
+            measure(HOP, m.hop((id, p), (ObjectId::new(j), q))).map_err(of)?;
+        }
+    }
+    Ok(())
+}

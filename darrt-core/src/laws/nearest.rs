@@ -1,0 +1,69 @@
+//! The law of [`Distance::nearest`]: whatever it skips, it answers as the obvious scan does.
+
+use std::sync::Arc;
+
+use crate::distance::Distance;
+use crate::domain::Domain;
+use crate::motion::{Instance, Waypoints};
+use crate::partial::PartialState;
+use crate::state::{ComponentSet, State};
+use crate::tree::{Edge, Tree};
+
+use super::Broken;
+
+/// Faster searches agree with the linear scan.
+pub const LINEAR: &str =
+    "nearest.linear: nearest answers the node of least distance, the earliest one on a tie, as a linear scan does";
+
+/// The laws of this file.
+pub const LAWS: &[&str] = &[LINEAR];
+
+/// `nearest` names the node that a scan over all nodes names.
+///
+/// # Errors
+/// [`LINEAR`] with both nodes and their distances.
+pub fn check_nearest<D: Domain>(
+    m: &D,
+    distance: &dyn Distance<D>,
+    tree: &Tree<D>,
+    to: &PartialState<D>,
+) -> Result<(), Broken> {
+    let mut best: Option<(usize, f64)> = None;
+    for (id, node) in tree.iter() {
+        let metres = distance.distance(m, &node.state, to);
+        if best.is_none_or(|(_, least)| metres.total_cmp(&least).is_lt()) {
+            best = Some((id.index(), metres));
+        }
+    }
+    let found = distance.nearest(m, tree, to).map(|id| id.index());
+    if found == best.map(|(index, _)| index) {
+        return Ok(());
+    }
+    let state = found.and_then(|i| tree.iter().nth(i)).map(|(_, node)| distance.distance(m, &node.state, to));
+    let left = format!("node {found:?} at {state:?} m");
+    let broken = Broken::new(LINEAR, left, format!("node and metres {best:?}"));
+    Err(broken.replayed_by(|| {
+        let states: Vec<_> = tree.iter().map(|(_, node)| &node.state).collect();
+        format!("check_nearest(&tree_of({states:?}), &{to:?})")
+    }))
+}
+
+/// A tree that holds `root` and then `others`, each a child of the root: something to search in.
+pub fn tree_of<D: Domain>(root: State<D>, others: impl IntoIterator<Item = State<D>>) -> Tree<D> {
+    let mut tree = Tree::rooted_at(root.clone());
+    for state in others {
+        let states = vec![root.clone(), state.clone()];
+        let Some(motion) = Waypoints::new(states, &[0.0], root.mode.clone()) else { continue };
+        let instance = Arc::new(Instance {
+            label: "law",
+            motion: Box::new(motion),
+            contacts: D::Contacts::default(),
+            moves: ComponentSet::EMPTY,
+            object: None,
+            reversible: false,
+        });
+        // Only a tree of 2^32 nodes refuses another.
+        let _ = tree.add(state, Edge { parent: Tree::<D>::ROOT, instance, t: 1.0, primitive: 0 });
+    }
+    tree
+}

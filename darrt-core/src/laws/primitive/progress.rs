@@ -1,0 +1,69 @@
+//! Is the end of a propagation nearer to the target in something that the primitive moves?
+
+use crate::domain::Domain;
+use crate::laws::Broken;
+use crate::motion::Instance;
+use crate::partial::PartialState;
+use crate::space::ComponentSpace;
+use crate::state::{ComponentId, ComponentSet, State};
+
+use super::PROGRESS;
+
+/// One named component that moves, and how far it is from its target before and after.
+struct Gap {
+    component: ComponentId,
+    before: f64,
+    after: f64,
+}
+
+/// If named objects move, one of them must end nearer to its target. Otherwise the robot must, or an
+/// object must have been approached or manipulated to another mode: a grasp moves nothing, and yet the
+/// object can be carried afterwards.
+pub(super) fn progress<D: Domain>(
+    m: &D,
+    from: &State<D>,
+    to: &PartialState<D>,
+    end: &State<D>,
+    instances: &[Instance<D>],
+) -> Result<(), Broken> {
+    let moved = instances.iter().fold(ComponentSet::EMPTY, |set, instance| set.union(instance.moves));
+    let gaps = gaps(m, from, to, end, moved);
+    let is_nearer = |gap: &Gap| gap.after < gap.before;
+    let mut objects = gaps.iter().filter(|gap| gap.component != ComponentId::Robot).peekable();
+    let holds = if objects.peek().is_some() {
+        objects.any(is_nearer)
+    } else {
+        let prepares = from.mode != end.mode && instances.iter().any(|instance| instance.object.is_some());
+        prepares || gaps.iter().any(is_nearer)
+    };
+    if holds {
+        return Ok(());
+    }
+    let text = |metres: fn(&Gap) -> f64| {
+        let parts: Vec<_> =
+            gaps.iter().map(|gap| format!("{} {:?} m", m.component_name(gap.component), metres(gap))).collect();
+        if parts.is_empty() { "no named component moves".to_owned() } else { parts.join(", ") }
+    };
+    Err(Broken::new(
+        PROGRESS,
+        format!("to the target after: {}", text(|gap| gap.after)),
+        format!("before: {}", text(|gap| gap.before)),
+    ))
+}
+
+fn gaps<D: Domain>(m: &D, from: &State<D>, to: &PartialState<D>, end: &State<D>, moved: ComponentSet) -> Vec<Gap> {
+    let mut gaps = Vec::new();
+    if moved.contains(ComponentId::Robot) && to.robot().is_some() {
+        let gap = |s: &State<D>| m.robot().distance(&s.robot, &to.robot_overlay(m, &s.robot));
+        gaps.push(Gap { component: ComponentId::Robot, before: gap(from), after: gap(end) });
+    }
+    for (id, target) in to.objects() {
+        let component = ComponentId::Object(id);
+        if moved.contains(component)
+            && let (Some(space), Some(p), Some(q)) = (m.objects().get(id.index()), from.object(id), end.object(id))
+        {
+            gaps.push(Gap { component, before: space.distance(p, target), after: space.distance(q, target) });
+        }
+    }
+    gaps
+}

@@ -1,0 +1,237 @@
+//! Laws of [`ComponentSpace`].
+
+use std::fmt::Debug;
+
+use crate::random::{Purpose, stream};
+use crate::space::{ComponentSpace, GroupSet};
+
+use super::{Broken, at_most, ensure, identical, measure};
+
+/// The configurations handed to a check must lie in the space.
+pub const GIVEN: &str = "space.given: the configurations given to the check lie in the space";
+/// Metric: finite, not negative.
+pub const FINITE: &str = "space.finite: distance is finite and not negative";
+/// Metric: zero to itself.
+pub const SELF: &str = "space.self: distance(a, a) is 0";
+/// Metric: symmetric.
+pub const SYMMETRIC: &str = "space.symmetric: distance(a, b) is distance(b, a)";
+/// Metric: triangle inequality.
+pub const TRIANGLE: &str = "space.triangle: distance(a, c) is at most distance(a, b) + distance(b, c)";
+/// Metric: not zero everywhere.
+pub const SEPARATES: &str = "space.separates: samples of a space with degrees of freedom are not all at distance 0";
+/// The tolerance is a positive number.
+pub const TOLERANCE: &str = "space.tolerance: tolerance is finite and positive";
+/// Interpolation: ends.
+pub const ENDS: &str = "space.ends: interpolate(a, b, 0) is a and interpolate(a, b, 1) is b, bit for bit";
+/// Interpolation: inside.
+pub const INSIDE: &str = "space.inside: interpolation between two configurations of the space stays in it";
+/// Interpolation: rest.
+pub const REST: &str = "space.rest: interpolation between equal configurations stays there";
+/// Interpolation: monotone.
+pub const MONOTONE: &str = "space.monotone: the distance of the interpolation from its beginning never shrinks";
+/// Interpolation: even speed.
+pub const EVEN: &str = "space.even: between t1 and t2 the interpolation travels at most |t2 - t1| of the distance";
+/// Sampling: inside.
+pub const SAMPLE_INSIDE: &str = "space.sample-inside: samples lie in the space";
+/// Sampling: seeded.
+pub const SAMPLE_SEEDED: &str = "space.sample-seeded: the same generator gives the same sample";
+/// Sampling: covering.
+pub const SAMPLE_COVERS: &str = "space.sample-covers: samples come near every configuration of the space";
+/// Overlay: all and none.
+pub const OVERLAY_ENDS: &str = "space.overlay-ends: overlay of all groups is the target, of no group the beginning";
+/// Overlay: groups are independent.
+pub const OVERLAY_GROUPS: &str =
+    "space.overlay-groups: overlaying group after group is overlaying them at once, and each can be undone alone";
+/// Overlay: inside.
+pub const OVERLAY_INSIDE: &str = "space.overlay-inside: an overlay of two configurations of the space lies in it";
+
+/// The laws of this file.
+pub const LAWS: &[&str] = &[
+    GIVEN,
+    FINITE,
+    SELF,
+    SYMMETRIC,
+    TRIANGLE,
+    SEPARATES,
+    TOLERANCE,
+    ENDS,
+    INSIDE,
+    REST,
+    MONOTONE,
+    EVEN,
+    SAMPLE_INSIDE,
+    SAMPLE_SEEDED,
+    SAMPLE_COVERS,
+    OVERLAY_ENDS,
+    OVERLAY_GROUPS,
+    OVERLAY_INSIDE,
+];
+
+/// What a space claims beyond the laws that bind every space, and how exact its arithmetic is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpaceClaims {
+    /// Its distance keeps the triangle inequality.
+    pub triangle: bool,
+    /// Its interpolation is the shortest way at even speed, as motions along it need.
+    pub even: bool,
+    /// Rounding that is forgiven, metres per metre (and metres near zero).
+    pub slack: f64,
+}
+
+impl Default for SpaceClaims {
+    fn default() -> Self {
+        Self { triangle: true, even: true, slack: 1e-7 }
+    }
+}
+
+impl SpaceClaims {
+    fn slack_at(&self, metres: f64) -> f64 {
+        self.slack * (1.0 + metres.abs())
+    }
+}
+
+/// All laws of a space, for three configurations, two parameters in `[0, 1]` and a seed.
+///
+/// # Errors
+/// The first law that is [`Broken`].
+pub fn check_component_space<S: ComponentSpace>(
+    space: &S,
+    claims: &SpaceClaims,
+    configs: [&S::Config; 3],
+    ts: [f64; 2],
+    seed: u64,
+) -> Result<(), Broken> {
+    let [a, b, c] = configs;
+    let check = || {
+        for q in configs {
+            ensure(GIVEN, space.contains(q), || format!("{q:?}"), "a configuration of the space")?;
+        }
+        metric(space, claims, configs)?;
+        interpolation(space, claims, [a, b], ts)?;
+        samples(space, seed)?;
+        overlays(space, [a, b, c])
+    };
+    check().map_err(|broken| {
+        broken.replayed_by(|| format!("check_component_space({claims:?}, [&{a:?}, &{b:?}, &{c:?}], {ts:?}, {seed})"))
+    })
+}
+
+fn metric<S: ComponentSpace>(space: &S, claims: &SpaceClaims, [a, b, c]: [&S::Config; 3]) -> Result<(), Broken> {
+    let tolerance = space.tolerance();
+    ensure(TOLERANCE, tolerance.is_finite() && tolerance > 0.0, || format!("{tolerance:?}"), "finite and positive")?;
+    let d = |p, q| {
+        let metres = space.distance(p, q);
+        measure(FINITE, metres).map(|()| metres)
+    };
+    for q in [a, b, c] {
+        let metres = d(q, q)?;
+        ensure(SELF, metres == 0.0, || format!("{metres:?} for {q:?}"), "0.0")?;
+    }
+    let (ab, ba) = (d(a, b)?, d(b, a)?);
+    at_most(SYMMETRIC, (ab - ba).abs(), 0.0, claims.slack_at(ab) * 1e-3).map_err(|broken| Broken {
+        left: format!("{ab:?}").into(),
+        right: format!("{ba:?}").into(),
+        ..broken
+    })?;
+    if claims.triangle {
+        let (ac, bc) = (d(a, c)?, d(b, c)?);
+        at_most(TRIANGLE, ac, ab + bc, claims.slack_at(ab + bc))?;
+    }
+    Ok(())
+}
+
+fn interpolation<S: ComponentSpace>(
+    space: &S,
+    claims: &SpaceClaims,
+    [a, b]: [&S::Config; 2],
+    ts: [f64; 2],
+) -> Result<(), Broken> {
+    identical(ENDS, &space.interpolate(a, b, 0.0), a).map_err(|broken| broken.at(0.0))?;
+    identical(ENDS, &space.interpolate(a, b, 1.0), b).map_err(|broken| broken.at(1.0))?;
+    let length = space.distance(a, b);
+    let slack = claims.slack_at(length);
+    let [early, late] = [ts[0].min(ts[1]), ts[0].max(ts[1])];
+    let mut before: Option<(f64, S::Config, f64)> = None;
+    for t in [0.0, early, late, 1.0] {
+        let here = space.interpolate(a, b, t);
+        ensure(INSIDE, space.contains(&here), || format!("{here:?}"), "a configuration of the space")
+            .map_err(|broken| broken.at(t))?;
+        let from_a = space.distance(a, &here);
+        if let Some((t0, there, its)) = &before {
+            at_most(MONOTONE, *its, from_a, slack).map_err(|broken| broken.at(t))?;
+            if claims.even {
+                at_most(EVEN, space.distance(there, &here), length * (t - t0), slack).map_err(|broken| broken.at(t))?;
+            }
+        }
+        before = Some((t, here, from_a));
+        let still = space.interpolate(a, a, t);
+        at_most(REST, space.distance(a, &still), space.tolerance(), slack).map_err(|broken| broken.at(t))?;
+    }
+    Ok(())
+}
+
+fn samples<S: ComponentSpace>(space: &S, seed: u64) -> Result<(), Broken> {
+    let draw = |i| space.sample(&mut stream(seed, 0, i, Purpose::Sample));
+    let first = draw(0);
+    identical(SAMPLE_SEEDED, &draw(0), &first)?;
+    let mut widest: f64 = 0.0;
+    for i in 0..8 {
+        let q = draw(i);
+        ensure(SAMPLE_INSIDE, space.contains(&q), || format!("{q:?}"), "a configuration of the space")?;
+        widest = widest.max(space.distance(&first, &q));
+    }
+    let separates = space.dimension() == 0 || widest > 0.0;
+    ensure(SEPARATES, separates, || "eight samples, all at distance 0".to_owned(), "a positive distance")
+}
+
+/// The groups that `space` has, one by one.
+pub(super) fn groups_of<S: ComponentSpace>(space: &S) -> impl Iterator<Item = GroupSet> {
+    let groups = space.groups();
+    (0..32).filter(move |i| groups.contains(*i)).map(GroupSet::only)
+}
+
+fn overlays<S: ComponentSpace>(space: &S, [a, b, c]: [&S::Config; 3]) -> Result<(), Broken> {
+    identical(OVERLAY_ENDS, &space.overlay(a, b, space.groups()), b)?;
+    if !space.groups().is_empty() {
+        identical(OVERLAY_ENDS, &space.overlay(a, b, GroupSet::NONE), a)?;
+    }
+    let mut step_by_step = a.clone();
+    let mut so_far = GroupSet::NONE;
+    for group in groups_of(space) {
+        let one = space.overlay(a, b, group);
+        ensure(OVERLAY_INSIDE, space.contains(&one), || format!("{one:?}"), "a configuration of the space")?;
+        identical(OVERLAY_GROUPS, &space.overlay(&one, a, group), a)?;
+        // What c had there before does not matter once b is laid over it.
+        let covered = space.overlay(&space.overlay(a, c, group), b, group);
+        identical(OVERLAY_GROUPS, &covered, &one)?;
+        so_far = so_far.union(group);
+        step_by_step = space.overlay(&step_by_step, b, group);
+        identical(OVERLAY_GROUPS, &step_by_step, &space.overlay(a, b, so_far))?;
+    }
+    Ok(())
+}
+
+/// At least one of `draws` samples comes nearer than `within_m` to `target`: a sampler that leaves out a
+/// part of the space is found by targets there.
+///
+/// # Errors
+/// [`SAMPLE_COVERS`] with the least distance found.
+pub fn check_covering<S: ComponentSpace>(
+    space: &S,
+    target: &S::Config,
+    within_m: f64,
+    draws: u64,
+    seed: u64,
+) -> Result<(), Broken> {
+    let distances = (0..draws).map(|i| {
+        let q = space.sample(&mut stream(seed, 0, i, Purpose::Sample));
+        space.distance(&q, target)
+    });
+    let least = distances.fold(f64::INFINITY, f64::min);
+    at_most(SAMPLE_COVERS, least, within_m, 0.0)
+        .map_err(|broken| broken.replayed_by(|| replay_covering(target, within_m, draws, seed)))
+}
+
+fn replay_covering(target: &impl Debug, within_m: f64, draws: u64, seed: u64) -> String {
+    format!("check_covering(&{target:?}, {within_m:?}, {draws}, {seed})")
+}

@@ -1,0 +1,280 @@
+//! Laws of [`Validity`].
+
+use std::fmt;
+use std::sync::Arc;
+
+use rand::RngExt;
+
+use crate::domain::Domain;
+use crate::motion::{Instance, Motion};
+use crate::random::{Purpose, stream};
+use crate::state::State;
+use crate::validity::{Blame, FreePrefix, Validity};
+
+use super::{Broken, ensure, equal};
+
+/// Pure.
+pub const PURE: &str = "validity.pure: the same question has the same answer, whatever was asked in between";
+/// Fraction.
+pub const FRACTION: &str =
+    "validity.fraction: the free fraction lies in [0, 1], and is 1 exactly when nothing is blamed";
+/// One by one.
+pub const ONE_BY_ONE: &str =
+    "validity.one-by-one: check accepts every state of the free prefix, however densely it is looked at";
+/// Truncation.
+pub const CUT: &str = "validity.cut: a motion cut within its free prefix is free altogether";
+/// Blame is real.
+pub const BLAME_REAL: &str = "validity.blame-real: just behind the free prefix check rejects a state";
+/// Blame names.
+pub const BLAME_NAMES: &str = "validity.blame-names: free_prefix blames what check blames just behind the prefix";
+/// Blame is readable.
+pub const BLAME_TEXT: &str = "validity.blame-text: a blame names both bodies and a finite place";
+/// Exemptions.
+pub const EXEMPTIONS: &str =
+    "validity.exemptions: contacts that may touch never make a valid state invalid, and end with the instance";
+/// Obstacles.
+pub const ENLARGED: &str = "validity.enlarged: enlarging an obstacle never makes an invalid state valid";
+/// The oracle.
+pub const ORACLE: &str = "validity.oracle: what the fast check calls free, the exact oracle calls free";
+
+/// The laws of this file.
+pub const LAWS: &[&str] =
+    &[PURE, FRACTION, ONE_BY_ONE, CUT, BLAME_REAL, BLAME_NAMES, BLAME_TEXT, EXEMPTIONS, ENLARGED, ORACLE];
+
+/// How exactly a validity answers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ValidityClaims {
+    /// A blocked prefix ends at most this many metres of motion before a state that `check` rejects.
+    pub tight_m: f64,
+    /// `free_prefix` blames the same bodies as `check`. Where several bodies block at once, both may
+    /// blame any of them, and a validity need not claim this.
+    pub same_names: bool,
+    /// How many random parameters are looked at between the regular ones.
+    pub between: usize,
+}
+
+impl Default for ValidityClaims {
+    fn default() -> Self {
+        Self { tight_m: 0.02, same_names: true, between: 16 }
+    }
+}
+
+/// All laws of a validity, for the motion of one instance that starts at `from`.
+///
+/// # Errors
+/// The first law that is [`Broken`], with its parameter.
+pub fn check_validity<D: Domain>(
+    m: &D,
+    validity: &dyn Validity<D>,
+    instance: &Arc<Instance<D>>,
+    from: &State<D>,
+    claims: &ValidityClaims,
+    seed: u64,
+) -> Result<(), Broken> {
+    let trial = Trial { m, validity, instance, from, claims };
+    trial.run(seed).map_err(|broken| {
+        let broken = broken.of(format_args!("motion {:?}", instance.label));
+        broken.replayed_by(|| format!("check_validity(&{instance:?}, &{from:?}, {claims:?}, {seed})"))
+    })
+}
+
+struct Trial<'a, D: Domain> {
+    m: &'a D,
+    validity: &'a dyn Validity<D>,
+    instance: &'a Arc<Instance<D>>,
+    from: &'a State<D>,
+    claims: &'a ValidityClaims,
+}
+
+impl<D: Domain> Trial<'_, D> {
+    fn check(&self, t: f64) -> Result<(), Blame> {
+        self.validity.check(self.m, &self.instance.at(self.m, t, self.from), &self.instance.contacts)
+    }
+
+    fn run(&self, seed: u64) -> Result<(), Broken> {
+        let bare = self.bare_answers();
+        let free = self.validity.free_prefix(self.m, self.instance, self.from);
+        self.shape(&free)?;
+        self.prefix(&free, seed)?;
+        if let Some(blame) = &free.blame {
+            readable(blame)?;
+            self.blocked(&free, blame)?;
+        }
+        self.exemptions(&bare)?;
+        equal(PURE, &self.validity.free_prefix(self.m, self.instance, self.from), &free)?;
+        self.cut(&free)
+    }
+
+    fn shape(&self, free: &FreePrefix) -> Result<(), Broken> {
+        let holds = (0.0..=1.0).contains(&free.fraction) && free.blame.is_none() == (free.fraction == 1.0);
+        ensure(FRACTION, holds, || format!("{free:?}"), "1 without blame, or less with blame")
+    }
+
+    /// No state of the prefix is rejected: its end, 2, 7 and 64 equal steps, and random ones.
+    fn prefix(&self, free: &FreePrefix, seed: u64) -> Result<(), Broken> {
+        if free.fraction <= 0.0 {
+            return Ok(());
+        }
+        let mut rng = stream(seed, 0, 0, Purpose::Sample);
+        let random = (0..self.claims.between).map(|_| rng.random_range(0.0..=free.fraction)).collect::<Vec<_>>();
+        let regular = [1_u32, 2, 7, 64]
+            .into_iter()
+            .flat_map(|n| (0..=n).map(move |i| free.fraction * (f64::from(i) / f64::from(n))));
+        for t in regular.chain(random) {
+            if let Err(blame) = self.check(t) {
+                let broken = Broken::new(ONE_BY_ONE, blame.to_string(), format!("free up to {:?}", free.fraction));
+                return Err(broken.at(t));
+            }
+        }
+        Ok(())
+    }
+
+    /// Parameter of a length in metres; all of it for a motion without length.
+    fn parameter_of(&self, metres: f64) -> f64 {
+        let length = self.instance.motion.length();
+        if length > 0.0 { metres / length } else { 1.0 }
+    }
+
+    fn blocked(&self, free: &FreePrefix, blame: &Blame) -> Result<(), Broken> {
+        let window = self.parameter_of(self.claims.tight_m);
+        let scan = (0..=64).map(|i| (free.fraction + window * f64::from(i) / 64.0).min(1.0));
+        let found: Vec<Blame> = scan.filter_map(|t| self.check(t).err()).collect();
+        if found.is_empty() {
+            let against = format!("check accepts all of [{:?}, {:?}]", free.fraction, free.fraction + window);
+            let broken = Broken::new(BLAME_REAL, blame.to_string(), against);
+            return Err(broken.at(free.fraction).within(self.claims.tight_m));
+        }
+        let same = |b: &Blame| b.kind == blame.kind && b.first == blame.first && b.second == blame.second;
+        if self.claims.same_names && !found.iter().any(same) {
+            let against = found.first().map(ToString::to_string).unwrap_or_default();
+            return Err(Broken::new(BLAME_NAMES, blame.to_string(), against).at(free.fraction));
+        }
+        Ok(())
+    }
+
+    /// What `check` says about some states when nothing may touch.
+    fn bare_answers(&self) -> Vec<(f64, Result<(), Blame>)> {
+        let answer = |t| self.validity.check(self.m, &self.instance.at(self.m, t, self.from), &D::Contacts::default());
+        [0.0, 0.3, 0.5, 1.0].into_iter().map(|t| (t, answer(t))).collect()
+    }
+
+    /// The same answers as before any contact was allowed; and allowing contacts only makes more valid.
+    fn exemptions(&self, bare: &[(f64, Result<(), Blame>)]) -> Result<(), Broken> {
+        for ((t, before), (_, after)) in bare.iter().zip(self.bare_answers()) {
+            equal(EXEMPTIONS, &after, before).map_err(|broken| broken.at(*t))?;
+            let with = self.check(*t);
+            if before.is_ok() {
+                equal(EXEMPTIONS, &with, before).map_err(|broken| broken.at(*t))?;
+            }
+            equal(PURE, &self.check(*t), &with).map_err(|broken| broken.at(*t))?;
+        }
+        Ok(())
+    }
+
+    fn cut(&self, free: &FreePrefix) -> Result<(), Broken> {
+        let margin = if free.blame.is_some() { self.parameter_of(self.claims.tight_m) } else { 0.0 };
+        for share in [1.0, 0.6, 0.25] {
+            let until = (free.fraction - margin) * share;
+            if until <= 0.0 {
+                continue;
+            }
+            let short = truncated(self.instance, until);
+            let again = self.validity.free_prefix(self.m, &short, self.from);
+            if let Some(blame) = &again.blame {
+                let left = format!("free up to {:?}, then {blame}", again.fraction * until);
+                return Err(Broken::new(CUT, left, format!("free up to {:?}", free.fraction)).at(until));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn readable(blame: &Blame) -> Result<(), Broken> {
+    let holds = !blame.first.is_empty() && !blame.second.is_empty() && blame.place.iter().all(|x| x.is_finite());
+    ensure(BLAME_TEXT, holds, || format!("{blame:?}"), "two names and a finite place")
+}
+
+/// `instance` run on `[0, until]` only.
+pub fn truncated<D: Domain>(instance: &Arc<Instance<D>>, until: f64) -> Instance<D> {
+    Instance {
+        label: instance.label,
+        motion: Box::new(Cut { instance: Arc::clone(instance), until }),
+        contacts: instance.contacts.clone(),
+        moves: instance.moves,
+        object: instance.object,
+        reversible: instance.reversible,
+    }
+}
+
+/// A motion cut short.
+struct Cut<D: Domain> {
+    instance: Arc<Instance<D>>,
+    until: f64,
+}
+
+impl<D: Domain> Motion<D> for Cut<D> {
+    fn length(&self) -> f64 {
+        self.instance.motion.length() * self.until
+    }
+
+    fn at_into(&self, m: &D, t: f64, out: &mut State<D>) {
+        self.instance.motion.at_into(m, t.clamp(0.0, 1.0) * self.until, out);
+    }
+}
+
+impl<D: Domain> fmt::Debug for Cut<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Cut").field("instance", &self.instance).field("until", &self.until).finish()
+    }
+}
+
+/// Of two validities that differ in the size of obstacles, the one with larger obstacles rejects whatever
+/// the other rejects.
+///
+/// # Errors
+/// [`ENLARGED`] with the blame that was lost.
+pub fn check_enlarged<D: Domain>(
+    m: &D,
+    smaller: &dyn Validity<D>,
+    larger: &dyn Validity<D>,
+    state: &State<D>,
+    contacts: &D::Contacts,
+) -> Result<(), Broken> {
+    match (smaller.check(m, state, contacts), larger.check(m, state, contacts)) {
+        (Err(blame), Ok(())) => {
+            let broken = Broken::new(ENLARGED, "valid among the larger obstacles", blame.to_string());
+            Err(broken.replayed_by(|| format!("check_enlarged(&{state:?}, &{contacts:?})")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The fast check never calls free what the oracle calls blocked: `looks` equally spaced states of the
+/// free prefix, its end among them, are shown to the oracle.
+///
+/// # Errors
+/// [`ORACLE`] with the oracle's blame and the parameter.
+pub fn check_against_oracle<D: Domain>(
+    m: &D,
+    fast: &dyn Validity<D>,
+    oracle: &dyn Validity<D>,
+    instance: &Instance<D>,
+    from: &State<D>,
+    looks: u32,
+) -> Result<(), Broken> {
+    let free = fast.free_prefix(m, instance, from);
+    if free.fraction <= 0.0 {
+        return Ok(());
+    }
+    for i in 0..=looks.max(1) {
+        let t = free.fraction * (f64::from(i) / f64::from(looks.max(1)));
+        if let Err(blame) = oracle.check(m, &instance.at(m, t, from), &instance.contacts) {
+            let broken = Broken::new(ORACLE, format!("free up to {:?}", free.fraction), blame.to_string());
+            return Err(broken
+                .at(t)
+                .of(format_args!("motion {:?}", instance.label))
+                .replayed_by(|| format!("check_against_oracle(&{instance:?}, &{from:?}, {looks})")));
+        }
+    }
+    Ok(())
+}

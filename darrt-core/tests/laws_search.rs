@@ -1,0 +1,130 @@
+//! Partial states, distances, samplers and goals of the core keep their laws on two domains.
+#![cfg(feature = "testing")]
+
+use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
+use darrt_core::domain::Domain;
+use darrt_core::goal::{AnyOf, Goal, Reach, Region};
+use darrt_core::laws::nearest::tree_of;
+use darrt_core::laws::{
+    SpaceClaims, check_distance, check_domain, check_goal, check_nearest, check_not_above, check_partial,
+    check_sampler, check_sampler_covers,
+};
+use darrt_core::partial::PartialState;
+use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler};
+use darrt_core::state::{ObjectId, State};
+use darrt_core::testing::broken::bench::{Bench, Tag};
+use darrt_core::testing::puck::{Mode, Puck, PuckWorld};
+use darrt_core::testing::strategies::{config, parameters, seeds, states, targets};
+use proptest::prelude::*;
+
+const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_search.txt");
+
+fn pucks(count: usize) -> PuckWorld {
+    let puck = |i| Puck { name: format!("puck {i}").into(), radius_m: 0.12, is_graspable: i % 2 == 0 };
+    PuckWorld::new([4.0, 3.0], 0.15, (0..count).map(puck).collect()).unwrap()
+}
+
+/// One generic check, on both domains.
+macro_rules! on_both_domains {
+    ($($name:ident),+) => { $(
+        #[test]
+        fn $name() {
+            checks::$name(&Bench::default(), Tag::default());
+            for count in [0, 1, 4] {
+                checks::$name(&pucks(count), Mode::resting(count));
+            }
+        }
+    )+ };
+}
+
+on_both_domains!(domains, partial_states, distances, nearest_nodes, samplers, goals);
+
+mod checks {
+    use super::*;
+
+    pub(super) fn domains<D: Domain>(m: &D, mode: D::Mode) {
+        let s = states(m, mode);
+        let all = (s.clone(), s.clone(), s, parameters(), parameters(), seeds());
+        proptest!(config(48, REGRESSIONS), |((a, b, c, t, u, seed) in all)| {
+            check_domain(m, &SpaceClaims::default(), [&a, &b, &c], [t, u], seed)?;
+        });
+    }
+
+    pub(super) fn partial_states<D: Domain>(m: &D, mode: D::Mode) {
+        let s = states(m, mode);
+        proptest!(config(96, REGRESSIONS), |(a in targets(m), b in targets(m), here in s.clone(), there in s)| {
+            check_partial(m, [&a, &b], &here, &there)?;
+            check_partial(m, [&a, &a], &here, &here)?;
+        });
+    }
+
+    pub(super) fn distances<D: Domain>(m: &D, mode: D::Mode) {
+        let s = states(m, mode);
+        proptest!(config(96, REGRESSIONS), |(to in targets(m), here in s.clone(), there in s)| {
+            for distance in [&Euclidean as &dyn Distance<D>, &GreedyVisit, &ExactTour] {
+                check_distance(m, distance, &here, &to, &there)?;
+                check_distance(m, distance, &to.overlay(m, &here), &to, &there)?;
+            }
+            check_not_above(m, &ExactTour, &GreedyVisit, &here, &to)?;
+        });
+    }
+
+    pub(super) fn nearest_nodes<D: Domain>(m: &D, mode: D::Mode) {
+        let s = states(m, mode);
+        let many = proptest::collection::vec(s.clone(), 0..24);
+        proptest!(config(48, REGRESSIONS), |(to in targets(m), root in s, others in many)| {
+            // Twins of the nodes make ties.
+            let twice = others.iter().chain(&others).cloned();
+            let tree = tree_of(root, twice);
+            for distance in [&Euclidean as &dyn Distance<D>, &GreedyVisit, &ExactTour] {
+                check_nearest(m, distance, &tree, &to)?;
+            }
+        });
+    }
+
+    pub(super) fn samplers<D: Domain>(m: &D, _: D::Mode) {
+        let full = PartialState::anywhere(m).with_robot(m, home(m));
+        let goal = Reach::<D>::new(full);
+        let biased = GoalBiased::new(RandomSubset, 0.3).unwrap();
+        let subsets = RobotOrObjects::new(0.5, 0.5).unwrap();
+        let boxed: Box<dyn Sampler<D>> = Box::new(RandomSubset);
+        let all = [&Full as &dyn Sampler<D>, &RandomSubset, &biased, &subsets, &boxed];
+        for sampler in all {
+            proptest!(config(48, REGRESSIONS), |(seed in seeds())| {
+                check_sampler(m, sampler, &goal, seed)?;
+            });
+            check_sampler_covers(m, sampler, &goal, 200, 1).unwrap();
+        }
+    }
+
+    fn home<D: Domain>(m: &D) -> darrt_core::state::RobotConfig<D> {
+        use darrt_core::random::{Purpose, stream};
+        use darrt_core::space::ComponentSpace;
+        m.robot().sample(&mut stream(0, 0, 0, Purpose::Sample))
+    }
+
+    pub(super) fn goals<D: Domain>(m: &D, mode: D::Mode) {
+        proptest!(config(48, REGRESSIONS), |(a in targets(m), b in targets(m), from in states(m, mode.clone()), seed in seeds())| {
+            let wanted = mode.clone();
+            let reach = Reach::new(a.clone()).in_mode(Box::new(move |mode| *mode == wanted));
+            check_goal(m, &reach, &from, seed)?;
+            let any = AnyOf::<D>::new(vec![Box::new(Reach::new(a.clone())), Box::new(Reach::new(b))]);
+            check_goal(m, &any, &from, seed)?;
+            check_goal(m, &AnyOf::new(Vec::new()), &from, seed)?;
+            let (test, draw) = (a.clone(), a);
+            let region = Region::<D>::new(Box::new(move |m, s| test.is_met(m, s)), Box::new(move |_, _| Some(draw.clone())));
+            check_goal(m, &region, &from, seed)?;
+        });
+    }
+}
+
+#[test]
+fn an_empty_union_of_goals_is_neither_satisfied_nor_sampled() {
+    let m = pucks(1);
+    let state = State { robot: [1.0, 1.0], objects: [[2.0, 2.0]].into_iter().collect(), mode: Mode::resting(1) };
+    let goal = AnyOf::<PuckWorld>::new(Vec::new());
+    assert!(!goal.is_satisfied(&m, &state));
+    let mut rng = darrt_core::random::stream(0, 0, 0, darrt_core::random::Purpose::Sample);
+    assert_eq!(goal.sample(&m, &mut rng), None);
+    assert!(PartialState::anywhere(&m).object(ObjectId::new(3)).is_none());
+}

@@ -1,0 +1,164 @@
+//! Distance of one ball to many boxes at once: the first and cheapest look of the collision checker.
+//!
+//! The boxes lie in blocks of [`LANES`], each coordinate of a block side by side, so that the compiler turns the loops over
+//! lanes into vector instructions. A run-time dispatched kernel can replace [`BoxBatch::distances`] without its callers
+//! noticing: it is a pure function of its arguments, and multiplications and additions are kept apart (no fused ones) so that
+//! every processor gives the same bits.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// Boxes per block.
+pub(crate) const LANES: usize = 4;
+/// Where the unused lanes of the last block lie: farther than any cap, near enough for finite squares.
+const NOWHERE: f64 = 1e100;
+
+/// A box at a pose: its centre, its axes as columns, half its edge lengths.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PlacedBox {
+    pub(crate) centre: Vector3<f64>,
+    pub(crate) axes: Matrix3<f64>,
+    pub(crate) half: Vector3<f64>,
+}
+
+impl PlacedBox {
+    /// Signed distance from the surface of a ball to the box: exact while the ball's centre is outside the box, and
+    /// `-radius` when it is inside.
+    #[inline]
+    pub(crate) fn ball_distance(&self, centre: &Vector3<f64>, radius: f64) -> f64 {
+        let from_box = self.axes.tr_mul(&(centre - self.centre));
+        let over = (from_box.abs() - self.half).map(|x| if x > 0.0 { x } else { 0.0 });
+        over.norm() - radius
+    }
+}
+
+/// [`LANES`] boxes, transposed.
+#[derive(Debug, Clone, Copy)]
+struct Block {
+    centre: [[f64; LANES]; 3],
+    /// `axes[k][i]`: coordinate `i` of axis `k`.
+    axes: [[[f64; LANES]; 3]; 3],
+    half: [[f64; LANES]; 3],
+}
+
+impl Block {
+    const EMPTY: Self = Self { centre: [[NOWHERE; LANES]; 3], axes: [[[0.0; LANES]; 3]; 3], half: [[0.0; LANES]; 3] };
+
+    fn put(&mut self, lane: usize, placed: &PlacedBox) {
+        for i in 0..3 {
+            self.centre[i][lane] = placed.centre[i];
+            self.half[i][lane] = placed.half[i];
+            for k in 0..3 {
+                self.axes[k][i][lane] = placed.axes[(i, k)];
+            }
+        }
+    }
+
+    /// The kernel.
+    #[inline]
+    fn distances(&self, centre: &Vector3<f64>, radius: f64) -> [f64; LANES] {
+        let mut from = [[0.0; LANES]; 3];
+        for (i, row) in from.iter_mut().enumerate() {
+            for (lane, x) in row.iter_mut().enumerate() {
+                *x = centre[i] - self.centre[i][lane];
+            }
+        }
+        let mut squared = [0.0; LANES];
+        for (axis, half) in self.axes.iter().zip(&self.half) {
+            for (lane, sum) in squared.iter_mut().enumerate() {
+                let along =
+                    axis[0][lane] * from[0][lane] + axis[1][lane] * from[1][lane] + axis[2][lane] * from[2][lane];
+                let over = along.abs() - half[lane];
+                // A comparison that a NaN fails would hide it, so a NaN is let through.
+                let over = if over <= 0.0 { 0.0 } else { over };
+                *sum += over * over;
+            }
+        }
+        squared.map(|s| s.sqrt() - radius)
+    }
+}
+
+/// Boxes that stay where they are.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct BoxBatch {
+    blocks: Vec<Block>,
+    count: usize,
+}
+
+impl BoxBatch {
+    /// The given boxes, in order.
+    pub(crate) fn new(boxes: &[PlacedBox]) -> Self {
+        let blocks = boxes
+            .chunks(LANES)
+            .map(|chunk| {
+                let mut block = Block::EMPTY;
+                chunk.iter().enumerate().for_each(|(lane, placed)| block.put(lane, placed));
+                // Unused lanes: identity axes, so that the far centre counts.
+                for lane in chunk.len()..LANES {
+                    for k in 0..3 {
+                        block.axes[k][k][lane] = 1.0;
+                    }
+                }
+                block
+            })
+            .collect();
+        Self { blocks, count: boxes.len() }
+    }
+
+    /// Writes into `out`, for each box in order, what [`PlacedBox::ball_distance`] says (metres).
+    pub(crate) fn distances(&self, centre: &Vector3<f64>, radius: f64, out: &mut Vec<f64>) {
+        out.clear();
+        for block in &self.blocks {
+            out.extend_from_slice(&block.distances(centre, radius));
+        }
+        out.truncate(self.count);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::UnitQuaternion;
+    use proptest::prelude::*;
+
+    fn placed() -> impl Strategy<Value = PlacedBox> {
+        (
+            prop::array::uniform3(-2.0_f64..2.0),
+            prop::array::uniform3(-3.0_f64..3.0),
+            prop::array::uniform3(0.01_f64..1.0),
+        )
+            .prop_map(|(centre, turn, half)| PlacedBox {
+                centre: Vector3::from(centre),
+                axes: UnitQuaternion::from_scaled_axis(Vector3::from(turn)).to_rotation_matrix().into_inner(),
+                half: Vector3::from(half),
+            })
+    }
+
+    proptest! {
+        #[test]
+        fn the_batch_says_what_each_box_says(
+            boxes in prop::collection::vec(placed(), 0..11), at in prop::array::uniform3(-3.0_f64..3.0), radius in 0.0_f64..1.0,
+        ) {
+            let at = Vector3::from(at);
+            let mut out = vec![7.0];
+            BoxBatch::new(&boxes).distances(&at, radius, &mut out);
+            prop_assert_eq!(out.len(), boxes.len());
+            for (placed, found) in boxes.iter().zip(out) {
+                prop_assert!((placed.ball_distance(&at, radius) - found).abs() < 1e-12);
+            }
+        }
+
+        #[test]
+        fn the_distance_is_that_of_the_nearest_point(placed in placed(), at in prop::array::uniform3(-3.0_f64..3.0)) {
+            let at = Vector3::from(at);
+            let distance = placed.ball_distance(&at, 0.0);
+            for i in 0..8 {
+                let sign = Vector3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - Vector3::repeat(1.0);
+                let corner = placed.centre + placed.axes * placed.half.component_mul(&sign);
+                prop_assert!((corner - at).norm() >= distance - 1e-12);
+            }
+            let local = placed.axes.tr_mul(&(at - placed.centre));
+            let nearest = placed.centre + placed.axes * local.sup(&-placed.half).inf(&placed.half);
+            prop_assert!(((nearest - at).norm() - distance).abs() < 1e-12);
+        }
+    }
+}

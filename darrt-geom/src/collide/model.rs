@@ -1,0 +1,176 @@
+//! Building a collision model.
+
+use super::solid::{Plane, Solid};
+use super::{CollisionModel, Poses, Registered};
+use crate::batch::{BoxBatch, PlacedBox};
+use crate::body::Body;
+use crate::body_set::{BodyIndex, BodySet, MAXIMUM_BODIES};
+use crate::check;
+use crate::error::GeomError;
+use crate::shape::Shape;
+use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// Collects the bodies and the disabled pairs of a [`CollisionModel`].
+///
+/// Bodies get their [`BodyIndex`] in order of registration, fixed and moving ones alike.
+#[derive(Debug, Clone, Default)]
+pub struct CollisionModelBuilder {
+    bodies: Vec<Registered>,
+    solids: Vec<Solid>,
+    planes: Vec<Plane>,
+    disabled: BTreeSet<(BodyIndex, BodyIndex)>,
+}
+
+impl CollisionModelBuilder {
+    /// Adds a body that never moves.
+    ///
+    /// # Errors
+    /// When the body or the pose is unfit (see [`Body::check`]), the name is taken, or there are already
+    /// [`MAXIMUM_BODIES`] bodies.
+    pub fn add_fixed(&mut self, body: &Body, world_from_body: &Isometry3<f64>) -> Result<BodyIndex, GeomError> {
+        check::pose(&format!("pose of `{}`", body.name), world_from_body)?;
+        self.add(body, Some(*world_from_body))
+    }
+
+    /// Adds a body that gets its pose before each query.
+    ///
+    /// # Errors
+    /// As [`Self::add_fixed`], and when the body is not bounded.
+    pub fn add_moving(&mut self, body: &Body) -> Result<BodyIndex, GeomError> {
+        if !body.is_bounded() {
+            return Err(GeomError::UnboundedMoving { name: body.name.to_string() });
+        }
+        self.add(body, None)
+    }
+
+    /// Never tests this pair (order does not matter); for contacts that last only a while use
+    /// [`crate::AllowedContacts`].
+    ///
+    /// # Errors
+    /// When one of them is not registered.
+    pub fn disable(&mut self, a: BodyIndex, b: BodyIndex) -> Result<(), GeomError> {
+        for body in [a, b] {
+            if body.get() >= self.bodies.len() {
+                return Err(GeomError::UnknownIndex {
+                    name: "body of a disabled pair".to_owned(),
+                    index: body.get(),
+                    count: self.bodies.len(),
+                });
+            }
+        }
+        self.disabled.insert((a.min(b), a.max(b)));
+        Ok(())
+    }
+
+    /// The finished model.
+    pub fn build(self) -> CollisionModel {
+        let Self { mut bodies, solids, planes, disabled } = self;
+        let indices: Vec<BodyIndex> = (0_u16..).map(BodyIndex::new).take(bodies.len()).collect();
+        let is_moving: Vec<bool> = bodies.iter().map(|body| body.fixed.is_none()).collect();
+        let moving = |body: BodyIndex| is_moving.get(body.get()).copied().unwrap_or(false);
+        let mut moving_pairs = Vec::new();
+        for (i, &a) in indices.iter().enumerate() {
+            for &b in indices.iter().skip(i + 1) {
+                if disabled.contains(&(a, b)) || !(moving(a) || moving(b)) {
+                    continue;
+                }
+                for (body, partner) in [(a, b), (b, a)] {
+                    if let Some(registered) = bodies.get_mut(body.get()) {
+                        registered.partners.insert(partner);
+                    }
+                }
+                if moving(a) && moving(b) {
+                    moving_pairs.push((a, b));
+                }
+            }
+        }
+        let nowhere = PlacedBox { centre: Vector3::zeros(), axes: Matrix3::identity(), half: Vector3::zeros() };
+        let moving: BodySet = indices.iter().copied().filter(|&body| moving(body)).collect();
+        let initial = Poses {
+            world_from_body: vec![Isometry3::identity(); bodies.len()],
+            centres: vec![Vector3::zeros(); bodies.len()],
+            placed: vec![nowhere; solids.len()],
+            unsound: moving,
+        };
+        let mut model = CollisionModel {
+            bodies,
+            solids,
+            planes,
+            moving_pairs,
+            moving,
+            fixed_boxes: BoxBatch::default(),
+            fixed_solids: Vec::new(),
+            initial,
+        };
+        model.place_fixed(&indices);
+        model
+    }
+
+    /// Registers a body whose pose, when it has one, is checked.
+    fn add(&mut self, body: &Body, fixed: Option<Isometry3<f64>>) -> Result<BodyIndex, GeomError> {
+        body.check()?;
+        check::count("bodies of a collision model", self.bodies.len() + 1, 0, MAXIMUM_BODIES)?;
+        if self.bodies.iter().any(|other| other.name == body.name) {
+            return Err(GeomError::DuplicateName { what: "bodies", name: body.name.to_string() });
+        }
+        // Below MAXIMUM_BODIES, so it fits.
+        let index = BodyIndex::new(u16::try_from(self.bodies.len()).unwrap_or(u16::MAX));
+        let start = self.solids.len();
+        for part in &body.parts {
+            match (&part.shape, fixed) {
+                (Shape::HalfSpace { normal }, Some(world_from_body)) => {
+                    let world_from_shape = world_from_body * part.body_from_shape;
+                    self.planes.push(Plane::new(index, normal, world_from_shape, &part.shape));
+                }
+                _ => self.solids.push(Solid::new(index, part)),
+            }
+        }
+        let solids = start..self.solids.len();
+        let (centre, radius) = ball_around(self.solids.get(solids.clone()).unwrap_or_default());
+        self.bodies.push(Registered {
+            name: Arc::clone(&body.name),
+            fixed,
+            solids,
+            centre,
+            radius,
+            partners: BodySet::EMPTY,
+        });
+        Ok(index)
+    }
+}
+
+impl CollisionModel {
+    /// Places the fixed bodies and fills the batch.
+    fn place_fixed(&mut self, indices: &[BodyIndex]) {
+        let mut poses = self.initial.clone();
+        for &body in indices {
+            let Some(registered) = self.bodies.get(body.get()) else { continue };
+            if let Some(world_from_body) = registered.fixed {
+                self.place(&mut poses, body, &world_from_body);
+                self.fixed_solids.extend(registered.solids.clone());
+            }
+        }
+        let boxes: Vec<PlacedBox> = self.fixed_solids.iter().filter_map(|&i| poses.placed.get(i).copied()).collect();
+        self.fixed_boxes = BoxBatch::new(&boxes);
+        self.initial = poses;
+    }
+}
+
+/// A ball around the balls of some solids, body frame.
+fn ball_around(solids: &[Solid]) -> (Point3<f64>, f64) {
+    let mut low = Vector3::repeat(f64::INFINITY);
+    let mut high = -low;
+    for solid in solids {
+        let half = Vector3::repeat(solid.radius);
+        low = low.inf(&(solid.centre.coords - half));
+        high = high.sup(&(solid.centre.coords + half));
+    }
+    if solids.is_empty() {
+        return (Point3::origin(), 0.0);
+    }
+    let centre = Point3::from((low + high) / 2.0);
+    let reach = |solid: &Solid| (solid.centre - centre).norm() + solid.radius;
+    (centre, solids.iter().map(reach).fold(0.0, f64::max))
+}

@@ -1,0 +1,135 @@
+//! Triangle surfaces and the files they come from.
+
+mod read;
+
+use crate::check;
+use crate::convert;
+use crate::error::GeomError;
+use nalgebra::{Point3, Vector3};
+use parry3d_f64::shape::{SharedShape, TriMesh};
+use std::path::Path;
+
+/// Largest mesh file read, in bytes (64 MiB).
+pub const MAXIMUM_FILE_BYTES: u64 = 64 << 20;
+/// Most triangles a mesh may have.
+pub const MAXIMUM_TRIANGLES: usize = 2_000_000;
+
+/// A triangle surface; need not be closed.
+///
+/// Distances are to the surface: a body wholly inside a closed mesh is as far from it as from its nearest triangle.
+#[derive(Clone)]
+pub struct TriangleMesh {
+    vertices: Vec<Point3<f64>>,
+    triangles: Vec<[u32; 3]>,
+    parry: SharedShape,
+}
+
+impl TriangleMesh {
+    /// A mesh of `triangles`, each three indices into `vertices` (metres, own frame); `name` appears in messages.
+    ///
+    /// Triangles without area are dropped, and so are vertices no triangle names.
+    ///
+    /// # Errors
+    /// When there are more than [`MAXIMUM_TRIANGLES`], none with an area, an index names no vertex, or a coordinate is not
+    /// finite or beyond 1e4 m.
+    pub fn new(name: &str, vertices: &[Point3<f64>], triangles: &[[u32; 3]]) -> Result<Self, GeomError> {
+        check::count(&format!("triangles of {name}"), triangles.len(), 1, MAXIMUM_TRIANGLES)?;
+        for (i, p) in vertices.iter().enumerate() {
+            check::point(&format!("vertex {i} of {name}"), p)?;
+        }
+        let (vertices, triangles) = compact(name, vertices, triangles)?;
+        check::count(&format!("triangles with an area of {name}"), triangles.len(), 1, MAXIMUM_TRIANGLES)?;
+        let corners = vertices.iter().map(|p| convert::vector(&p.coords)).collect();
+        let mesh = TriMesh::new(corners, triangles.clone()).map_err(|error| GeomError::Malformed {
+            path: name.to_owned(),
+            format: "mesh",
+            reason: error.to_string(),
+        })?;
+        Ok(Self { vertices, triangles, parry: SharedShape::new(mesh) })
+    }
+
+    /// Reads a mesh from an STL (ascii or binary) or OBJ file, chosen by the ending; each axis is multiplied by `scale`.
+    ///
+    /// Materials, normals and textures are ignored; OBJ polygons become fans of triangles; groups are merged.
+    ///
+    /// # Errors
+    /// When the ending is neither `stl` nor `obj`, the file cannot be read, exceeds [`MAXIMUM_FILE_BYTES`], is malformed,
+    /// or its content is refused by [`Self::new`]; when an entry of `scale` is zero, not finite, or beyond 1e4.
+    pub fn from_file(path: &Path, scale: &Vector3<f64>) -> Result<Self, GeomError> {
+        let shown = path.display().to_string();
+        for factor in scale.iter() {
+            check::in_range(&format!("size of the scale of {shown}"), factor.abs(), 1e-9, check::MAXIMUM_LENGTH)?;
+        }
+        let soup = read::soup(path)?;
+        let scaled: Vec<_> = soup.vertices.iter().map(|p| Point3::from(p.coords.component_mul(scale))).collect();
+        Self::new(&shown, &scaled, &soup.triangles)
+    }
+
+    /// Corners of the triangles, own frame.
+    pub fn vertices(&self) -> &[Point3<f64>] {
+        &self.vertices
+    }
+
+    /// Triangles as indices into [`Self::vertices`].
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    pub(crate) fn parry(&self) -> &SharedShape {
+        &self.parry
+    }
+}
+
+impl PartialEq for TriangleMesh {
+    fn eq(&self, other: &Self) -> bool {
+        self.vertices == other.vertices && self.triangles == other.triangles
+    }
+}
+
+impl std::fmt::Debug for TriangleMesh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("TriangleMesh")
+            .field("vertices", &self.vertices.len())
+            .field("triangles", &self.triangles.len())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Vertices and triangles with the idle ones dropped and the rest renumbered in order of first use.
+type Compact = (Vec<Point3<f64>>, Vec<[u32; 3]>);
+
+/// Checks the indices and drops triangles without area and vertices without triangle.
+fn compact(name: &str, vertices: &[Point3<f64>], triangles: &[[u32; 3]]) -> Result<Compact, GeomError> {
+    let mut renamed: Vec<Option<u32>> = vec![None; vertices.len()];
+    let mut kept_vertices = Vec::new();
+    let mut kept_triangles = Vec::with_capacity(triangles.len());
+    for (number, triangle) in triangles.iter().enumerate() {
+        let mut corners = [Point3::origin(); 3];
+        for (corner, &index) in corners.iter_mut().zip(triangle) {
+            *corner = *vertices.get(index as usize).ok_or_else(|| GeomError::UnknownVertex {
+                name: name.to_owned(),
+                triangle: number,
+                vertex: index as usize,
+                count: vertices.len(),
+            })?;
+        }
+        let [a, b, c] = corners;
+        if (b - a).cross(&(c - a)).norm() <= f64::MIN_POSITIVE {
+            continue;
+        }
+        let mut renumbered = [0; 3];
+        for ((new, &old), corner) in renumbered.iter_mut().zip(triangle).zip(corners) {
+            let Some(slot) = renamed.get_mut(old as usize) else { continue };
+            *new = *slot.get_or_insert_with(|| {
+                kept_vertices.push(corner);
+                // At most three vertices per triangle, far below 2^32.
+                u32::try_from(kept_vertices.len() - 1).unwrap_or(u32::MAX)
+            });
+        }
+        kept_triangles.push(renumbered);
+    }
+    Ok((kept_vertices, kept_triangles))
+}
+
+#[cfg(test)]
+mod tests;

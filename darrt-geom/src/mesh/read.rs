@@ -1,0 +1,140 @@
+//! STL and OBJ files as triangle soups, bounded in size and never panicking.
+
+use super::{MAXIMUM_FILE_BYTES, MAXIMUM_TRIANGLES};
+use crate::check;
+use crate::error::GeomError;
+use nalgebra::Point3;
+use std::fs::File;
+use std::io::{Cursor, Read};
+use std::path::Path;
+
+/// What a file holds, before it is checked.
+#[derive(Debug, Default)]
+pub(super) struct Soup {
+    pub(super) vertices: Vec<Point3<f64>>,
+    pub(super) triangles: Vec<[u32; 3]>,
+}
+
+/// Reads the file by the reader its ending asks for.
+pub(super) fn soup(path: &Path) -> Result<Soup, GeomError> {
+    let shown = path.display().to_string();
+    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let parse = match ending.as_str() {
+        "stl" => stl,
+        "obj" => obj,
+        _ => return Err(GeomError::UnknownFormat { path: shown, ending }),
+    };
+    parse(&shown, &bytes(path, &shown)?)
+}
+
+/// The file's bytes, at most [`MAXIMUM_FILE_BYTES`] of them.
+fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, GeomError> {
+    let unreadable =
+        |error: std::io::Error| GeomError::Unreadable { path: shown.to_owned(), reason: error.to_string() };
+    let file = File::open(path).map_err(unreadable)?;
+    let told = file.metadata().map_err(unreadable)?.len();
+    let mut bytes = Vec::new();
+    if told <= MAXIMUM_FILE_BYTES {
+        // The size told can be wrong (pipes, growing files), so the reading is bounded as well.
+        file.take(MAXIMUM_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    }
+    let size = told.max(bytes.len() as u64);
+    if size > MAXIMUM_FILE_BYTES {
+        return Err(GeomError::FileTooLarge { path: shown.to_owned(), bytes: size, maximum: MAXIMUM_FILE_BYTES });
+    }
+    Ok(bytes)
+}
+
+/// STL, ascii or binary.
+///
+/// Many exporters begin a binary header with `solid`, so a file whose length is exactly that of a binary file with the
+/// count it tells is binary, whatever its header says.
+pub(super) fn stl(shown: &str, bytes: &[u8]) -> Result<Soup, GeomError> {
+    let malformed = |reason: String| GeomError::Malformed { path: shown.to_owned(), format: "STL", reason };
+    let told = bytes.get(80..84).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
+    let is_binary = told.is_some_and(|count| bytes.len() as u64 == 84 + 50 * u64::from(count));
+    let mut owned;
+    let bytes = if is_binary && bytes.starts_with(b"solid") {
+        owned = bytes.to_vec();
+        owned.iter_mut().take(5).for_each(|b| *b = b' ');
+        owned.as_slice()
+    } else {
+        bytes
+    };
+    let mut cursor = Cursor::new(bytes);
+    let reader = stl_io::create_stl_reader(&mut cursor).map_err(|e| malformed(e.to_string()))?;
+    let mut soup = Soup::default();
+    for triangle in reader {
+        let triangle = triangle.map_err(|e| malformed(e.to_string()))?;
+        push(shown, &mut soup, triangle.vertices.map(|v| Point3::from(v.0.map(f64::from))))?;
+    }
+    Ok(soup)
+}
+
+/// OBJ; only positions and faces are kept.
+pub(super) fn obj(shown: &str, bytes: &[u8]) -> Result<Soup, GeomError> {
+    let malformed = |reason: String| GeomError::Malformed { path: shown.to_owned(), format: "OBJ", reason };
+    // Only these lines matter to us; the rest (normals, textures, materials, colours) is not even shown to the parser.
+    let text = std::str::from_utf8(bytes).map_err(|e| malformed(e.to_string()))?;
+    let mut kept = String::with_capacity(text.len());
+    for line in text.lines() {
+        keep(line, &mut kept);
+    }
+    let options =
+        tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
+    let no_materials = |_: &Path| Err(tobj::LoadError::MaterialParseError);
+    let (models, _) =
+        tobj::load_obj_buf(&mut Cursor::new(kept), &options, no_materials).map_err(|e| malformed(e.to_string()))?;
+    let mut soup = Soup::default();
+    for mesh in models.iter().map(|model| &model.mesh) {
+        let corner = |i: u32| {
+            let start = 3 * i as usize;
+            match mesh.positions.get(start..start + 3) {
+                Some(&[x, y, z]) => Some(Point3::new(f64::from(x), f64::from(y), f64::from(z))),
+                _ => None,
+            }
+        };
+        let (triples, _) = mesh.indices.as_chunks::<3>();
+        for &[a, b, c] in triples {
+            let (Some(a), Some(b), Some(c)) = (corner(a), corner(b), corner(c)) else {
+                return Err(malformed("a face names a vertex that does not exist".to_owned()));
+            };
+            push(shown, &mut soup, [a, b, c])?;
+        }
+    }
+    Ok(soup)
+}
+
+/// Copies the position and face lines, reduced to coordinates and position indices.
+fn keep(line: &str, kept: &mut String) {
+    let mut words = line.split('#').next().unwrap_or_default().split_whitespace();
+    match words.next() {
+        Some("v") => {
+            kept.push('v');
+            // Colours may follow three coordinates, a weight may be the fourth: neither is part of the surface we keep.
+            for word in words.take(3) {
+                kept.push(' ');
+                kept.push_str(word);
+            }
+        }
+        Some("f") => {
+            kept.push('f');
+            for word in words {
+                kept.push(' ');
+                kept.push_str(word.split('/').next().unwrap_or_default());
+            }
+        }
+        _ => return,
+    }
+    kept.push('\n');
+}
+
+/// Adds a triangle with three vertices of its own.
+fn push(shown: &str, soup: &mut Soup, corners: [Point3<f64>; 3]) -> Result<(), GeomError> {
+    check::count(&format!("triangles of {shown}"), soup.triangles.len() + 1, 1, MAXIMUM_TRIANGLES)?;
+    // Bounded by the line above, so the index fits.
+    let first = u32::try_from(soup.vertices.len()).unwrap_or(u32::MAX);
+    soup.vertices.extend(corners);
+    soup.triangles.push([first, first + 1, first + 2]);
+    Ok(())
+}

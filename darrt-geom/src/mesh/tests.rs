@@ -1,0 +1,107 @@
+use super::read::{obj, stl};
+use super::*;
+use proptest::prelude::*;
+use std::io::Write as _;
+
+const ASCII: &str = "solid one\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
+                     endloop\nendfacet\nendsolid one\n";
+
+fn binary(header: &[u8]) -> Vec<u8> {
+    let mut bytes = header.to_vec();
+    bytes.resize(80, 0);
+    bytes.extend(1_u32.to_le_bytes());
+    for value in [0.0_f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+        bytes.extend(value.to_le_bytes());
+    }
+    bytes.extend([0, 0]);
+    bytes
+}
+
+#[test]
+fn ascii_and_binary_stl_agree_even_under_a_lying_header() {
+    let ascii = stl("a", ASCII.as_bytes()).unwrap();
+    assert_eq!(ascii.triangles.len(), 1);
+    for header in [&b"made by hand"[..], b"solid but binary"] {
+        let soup = stl("b", &binary(header)).unwrap();
+        assert_eq!(soup.vertices, ascii.vertices);
+    }
+}
+
+#[test]
+fn obj_polygons_become_fans_and_extras_are_ignored() {
+    let text = "mtllib nowhere.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0 # corner\nvt 0 0\nusemtl x\n\
+                o part\nf 1/1 2/1 3/1 4/1\ng other\nf -4 -3 -2\n";
+    let soup = obj("o", text.as_bytes()).unwrap();
+    assert_eq!(soup.triangles.len(), 3);
+}
+
+#[test]
+fn malformed_files_are_errors_that_name_the_file() {
+    let truncated = &binary(b"x")[..100];
+    let cases: [Result<read::Soup, GeomError>; 7] = [
+        stl("bad.stl", truncated),
+        stl("bad.stl", b""),
+        stl("bad.stl", b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n"),
+        stl("bad.stl", b"solid x\n"),
+        obj("bad.obj", b"v 0 0\nf 1 2 3\n"),
+        obj("bad.obj", b"v 0 0 0\nf 1 2 9\n"),
+        obj("bad.obj", b"\xff\xfe"),
+    ];
+    for case in cases {
+        let message = case.unwrap_err().to_string();
+        assert!(message.contains("bad."), "{message}");
+    }
+}
+
+#[test]
+fn files_are_read_scaled_and_checked() {
+    let dir = std::env::temp_dir().join(format!("darrt-geom-mesh-{}", std::process::id()));
+    std::fs::create_dir_all(&dir).unwrap();
+    let path = dir.join("one.STL");
+    std::fs::File::create(&path).unwrap().write_all(ASCII.as_bytes()).unwrap();
+    let mesh = TriangleMesh::from_file(&path, &Vector3::new(2.0, 1.0, 1.0)).unwrap();
+    assert_eq!(mesh.vertices().iter().map(|p| p.x).fold(0.0, f64::max), 2.0);
+    assert!(TriangleMesh::from_file(&path, &Vector3::zeros()).is_err());
+    let other = TriangleMesh::from_file(&dir.join("a.dae"), &Vector3::repeat(1.0));
+    assert!(matches!(other, Err(GeomError::UnknownFormat { .. })));
+    let missing = TriangleMesh::from_file(&dir.join("none.obj"), &Vector3::repeat(1.0));
+    assert!(matches!(missing, Err(GeomError::Unreadable { .. })));
+    std::fs::remove_dir_all(&dir).unwrap();
+}
+
+#[test]
+fn content_is_checked() {
+    let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [9.0, 9.0, 9.0]].map(Point3::from);
+    let mesh = TriangleMesh::new("m", &square, &[[0, 1, 2], [0, 0, 1]]).unwrap();
+    assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (3, 1));
+    assert!(matches!(TriangleMesh::new("m", &square, &[[0, 1, 7]]), Err(GeomError::UnknownVertex { vertex: 7, .. })));
+    assert!(matches!(TriangleMesh::new("m", &square, &[[0, 0, 1]]), Err(GeomError::Count { .. })));
+    assert!(matches!(TriangleMesh::new("m", &square, &[]), Err(GeomError::Count { .. })));
+    let broken = [Point3::new(f64::NAN, 0.0, 0.0), square[1], square[2]];
+    assert!(matches!(TriangleMesh::new("m", &broken, &[[0, 1, 2]]), Err(GeomError::NotFinite { .. })));
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_make_a_reader_panic(
+        noise in prop::collection::vec(any::<u8>(), 0..300), cut in 0_usize..140, at in 0_usize..134, flip in any::<u8>(),
+    ) {
+        let mut near = binary(b"header");
+        near[at] ^= flip;
+        near.truncate(cut);
+        for bytes in [&noise, &near] {
+            let _ = stl("noise", bytes);
+            let _ = obj("noise", bytes);
+        }
+    }
+
+    #[test]
+    fn no_text_makes_a_reader_panic(
+        lines in prop::collection::vec("(v|f|o|g|l|vt|solid|facet normal|vertex)( (-?[0-9]{1,3}(\\.[0-9])?(/[0-9]?)?|nan|inf)){0,5}", 0..20),
+    ) {
+        let text = lines.join("\n");
+        for soup in [stl("text", text.as_bytes()), obj("text", text.as_bytes())].into_iter().flatten() {
+            let _ = TriangleMesh::new("text", &soup.vertices, &soup.triangles);
+        }
+    }
+}

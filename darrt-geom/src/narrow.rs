@@ -1,0 +1,187 @@
+//! parry's distance queries behind guards: no panic, no missing pair, a certified bound.
+
+use crate::convert::{self, ParryShape};
+use crate::shape::Shape;
+use nalgebra::{Isometry3, Point3, Vector3};
+use parry3d_f64::math::Pose;
+use parry3d_f64::query::details::closest_points_support_map_support_map;
+use parry3d_f64::query::{ClosestPoints, DefaultQueryDispatcher, QueryDispatcher};
+
+/// Farther than any two solids can be apart, small enough that its square is finite.
+const EVERYWHERE: f64 = 1e9;
+/// Largest coordinate a pose may have here: beyond it squares lose the millimetres.
+pub(crate) const FARTHEST: f64 = 1e6;
+/// How much the nearest points on a mesh may be off, in metres: parry's iteration is not certified per triangle.
+const MESH_SLACK: f64 = 2e-5;
+
+/// A posed shape, ready for parry.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Posed<'a> {
+    pub(crate) shape: &'a Shape,
+    pub(crate) parry: &'a ParryShape,
+    pub(crate) world_from_shape: Isometry3<f64>,
+}
+
+impl Posed<'_> {
+    /// The pose of parry's frame.
+    fn pose(&self) -> Pose {
+        convert::pose(&self.world_from_shape) * self.parry.shape_from_parry
+    }
+
+    /// Least value of `direction . p` over the points of the shape (world).
+    fn lowest(&self, direction: &Vector3<f64>) -> f64 {
+        let local = self.world_from_shape.inverse_transform_vector(direction);
+        direction.dot(&self.world_from_shape.translation.vector) - self.shape.support_extent(&-local)
+    }
+
+    /// A point with the least value of `direction . p` (world).
+    fn lowest_point(&self, direction: &Vector3<f64>) -> Point3<f64> {
+        let local = self.world_from_shape.inverse_transform_vector(direction);
+        self.world_from_shape * self.shape.support_point(&-local)
+    }
+}
+
+/// How two posed shapes lie to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Gap {
+    /// They touch or overlap, or it could not be found out that they do not.
+    Closed,
+    /// They are apart.
+    Open {
+        /// Distance between the two points.
+        distance: f64,
+        /// Never more than the true distance.
+        lower: f64,
+        /// Nearest point of the first (world).
+        first: Point3<f64>,
+        /// Nearest point of the second (world).
+        second: Point3<f64>,
+    },
+}
+
+/// Whether a pose is fit for the queries here: finite, within [`FARTHEST`], a unit quaternion to 1e-6.
+pub(crate) fn is_sound(pose: &Isometry3<f64>) -> bool {
+    let near = pose.translation.vector.iter().all(|x| x.abs() <= FARTHEST);
+    near && (pose.rotation.as_ref().norm_squared() - 1.0).abs() < 2e-6
+}
+
+/// The gap between two posed shapes. Two half spaces always count as touching, and so does a pose that is not sound.
+pub(crate) fn gap(a: &Posed<'_>, b: &Posed<'_>) -> Gap {
+    if !is_sound(&a.world_from_shape) || !is_sound(&b.world_from_shape) {
+        return Gap::Closed;
+    }
+    match (a.shape, b.shape) {
+        (Shape::HalfSpace { .. }, Shape::HalfSpace { .. }) => Gap::Closed,
+        (Shape::HalfSpace { normal }, _) => above_plane(a, normal, b),
+        (_, Shape::HalfSpace { normal }) => swapped(above_plane(b, normal, a)),
+        _ => bounded_gap(a, b),
+    }
+}
+
+/// A shape over a half space, exactly.
+fn above_plane(plane: &Posed<'_>, normal: &Vector3<f64>, other: &Posed<'_>) -> Gap {
+    let normal = plane.world_from_shape * normal;
+    let offset = normal.dot(&plane.world_from_shape.translation.vector);
+    let distance = other.lowest(&normal) - offset;
+    if distance <= 0.0 {
+        return Gap::Closed;
+    }
+    let second = other.lowest_point(&normal);
+    Gap::Open { distance, lower: distance, first: second - normal * distance, second }
+}
+
+fn swapped(gap: Gap) -> Gap {
+    match gap {
+        Gap::Closed => Gap::Closed,
+        Gap::Open { distance, lower, first, second } => Gap::Open { distance, lower, first: second, second: first },
+    }
+}
+
+/// Two shapes of which neither is a half space.
+fn bounded_gap(a: &Posed<'_>, b: &Posed<'_>) -> Gap {
+    let (pose_a, pose_b) = (a.pose(), b.pose());
+    let relative = pose_a.inv_mul(&pose_b);
+    let (shape_a, shape_b) = (&*a.parry.shape, &*b.parry.shape);
+    let ball = shape_a.as_ball().is_some() || shape_b.as_ball().is_some();
+    let hull = shape_a.as_convex_polyhedron().is_some() || shape_b.as_convex_polyhedron().is_some();
+    // parry projects a ball's centre on the other shape, which is exact, but for hulls it asserts that an iteration
+    // converges; the general iteration reports it instead.
+    let points = match (shape_a.as_support_map(), shape_b.as_support_map()) {
+        (Some(map_a), Some(map_b)) if hull || !ball => {
+            closest_points_support_map_support_map(&relative, map_a, map_b, EVERYWHERE)
+        }
+        _ => DefaultQueryDispatcher
+            .closest_points(&relative, shape_a, shape_b, EVERYWHERE)
+            .unwrap_or(ClosestPoints::Intersecting),
+    };
+    let ClosestPoints::WithinMargin(first, second) = points else { return Gap::Closed };
+    let (first, second) = (convert::point_from(pose_a * first), convert::point_from(pose_b * second));
+    let apart = second - first;
+    let distance = apart.norm();
+    // A NaN counts as closed.
+    if distance.is_nan() || distance <= 0.0 {
+        return Gap::Closed;
+    }
+    Gap::Open { distance, lower: certified(a, b, &(apart / distance), distance), first, second }
+}
+
+/// A lower bound of the distance: the gap along `direction` (unit, from a to b), exact when the direction is that of the
+/// nearest points of two convex shapes.
+fn certified(a: &Posed<'_>, b: &Posed<'_>, direction: &Vector3<f64>, distance: f64) -> f64 {
+    let mesh = matches!(a.shape, Shape::Mesh(_)) || matches!(b.shape, Shape::Mesh(_));
+    let lower = if mesh { distance - MESH_SLACK } else { b.lowest(direction) + a.lowest(&-direction) };
+    lower.min(distance).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn distance(a: &Shape, world_from_a: Isometry3<f64>, b: &Shape, world_from_b: Isometry3<f64>) -> Gap {
+        let (parry_a, parry_b) = (convert::shape(a), convert::shape(b));
+        let first = Posed { shape: a, parry: &parry_a, world_from_shape: world_from_a };
+        gap(&first, &Posed { shape: b, parry: &parry_b, world_from_shape: world_from_b })
+    }
+
+    #[test]
+    fn known_distances() {
+        let cube = Shape::cuboid(Vector3::repeat(0.5)).unwrap();
+        let can = Shape::cylinder(0.5, 1.0).unwrap();
+        let ball = Shape::sphere(0.5).unwrap();
+        let floor = Shape::half_space(Vector3::z_axis()).unwrap();
+        let corners: Vec<_> = (0..8)
+            .map(|i| Point3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - Vector3::repeat(0.5))
+            .collect();
+        let hull = Shape::convex_hull("cube", &corners).unwrap();
+        let at = Isometry3::translation;
+        let here = Isometry3::identity();
+        let cases = [
+            (&cube, at(2.0, 2.0, 0.0), &cube, here, 2.0_f64.sqrt()),
+            (&can, at(0.0, 0.0, 2.0), &cube, here, 0.5),
+            (&can, at(3.0, 0.0, 0.5), &ball, here, 2.0),
+            (&hull, at(3.0, 0.0, 0.0), &ball, here, 2.0),
+            (&floor, here, &hull, at(0.0, 0.0, 2.0), 1.5),
+            (&can, at(0.0, 0.0, 2.0), &floor, here, 1.0),
+        ];
+        for (a, pose_a, b, pose_b, expected) in cases {
+            let Gap::Open { distance: found, lower, first, second } = distance(a, pose_a, b, pose_b) else {
+                panic!("{} {}", a.kind(), b.kind())
+            };
+            assert!((found - expected).abs() < 1e-6 && lower <= expected + 1e-9 && lower > expected - 1e-5);
+            assert!(((first - second).norm() - expected).abs() < 1e-6);
+        }
+        assert_eq!(distance(&cube, at(0.9, 0.0, 0.0), &can, here), Gap::Closed);
+        assert_eq!(distance(&floor, here, &floor, at(0.0, 0.0, -9.0)), Gap::Closed);
+    }
+
+    #[test]
+    fn unsound_poses_count_as_touching() {
+        let cube = Shape::cuboid(Vector3::repeat(0.5)).unwrap();
+        for bad in [f64::NAN, f64::INFINITY, 1e300] {
+            assert_eq!(
+                distance(&cube, Isometry3::translation(bad, 0.0, 0.0), &cube, Isometry3::identity()),
+                Gap::Closed
+            );
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! The slow, obvious judge: every part of every body against every part of every other, through parry.
+//!
+//! It shares nothing with [`crate::collide`] but the shapes themselves, so that tests can hold the fast checker against it and a
+//! plan can be judged by code that did not make it.
+
+use crate::body::{Body, Part};
+use crate::check;
+use crate::convert::{self, ParryShape};
+use crate::error::GeomError;
+use crate::place;
+use crate::shape::Shape;
+use nalgebra::{Isometry3, Point3};
+use parry3d_f64::math::Pose;
+use parry3d_f64::query::details::distance_support_map_support_map;
+use parry3d_f64::query::{distance, intersection_test};
+
+/// A body at a pose in the world.
+#[derive(Debug, Clone, Copy)]
+pub struct PosedBody<'a> {
+    /// The body.
+    pub body: &'a Body,
+    /// Its pose.
+    pub world_from_body: Isometry3<f64>,
+}
+
+/// What the judge found about a pair of bodies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finding {
+    /// Index of the first body (the smaller one) in the list given.
+    pub first: usize,
+    /// Index of the second body.
+    pub second: usize,
+    /// The parts concerned, of the first and of the second body.
+    pub parts: (usize, usize),
+    /// Distance in metres between the two parts; 0 when they intersect.
+    pub distance: f64,
+    /// Whether the parts touch or overlap.
+    pub intersects: bool,
+    /// A point in both or between them (world); hulls and meshes count as their boxes here.
+    pub place: Point3<f64>,
+}
+
+/// Every pair of bodies that touch or overlap, except those `skip` says to leave out (asked with the smaller index first).
+///
+/// Of a pair of bodies the first intersecting parts are told. Meshes are surfaces. Two half spaces touch unless they face away
+/// from each other.
+///
+/// # Errors
+/// When a body or a pose is unfit, see [`Body::check`].
+pub fn intersections(bodies: &[PosedBody<'_>], skip: &dyn Fn(usize, usize) -> bool) -> Result<Vec<Finding>, GeomError> {
+    let mut found = Vec::new();
+    each_pair(bodies, skip, &mut |pair| {
+        let hit = each_parts(pair).find(|(_, a, b)| intersect(a, b));
+        found.extend(hit.map(|(parts, a, b)| finding(pair, parts, &a, &b, 0.0, true)));
+    })?;
+    Ok(found)
+}
+
+/// The nearest parts of any pair of bodies, except those `skip` says to leave out (asked with the smaller index first); `None`
+/// when no pair is left. Ties go to the earlier pair.
+///
+/// # Errors
+/// When a body or a pose is unfit, see [`Body::check`].
+pub fn nearest(bodies: &[PosedBody<'_>], skip: &dyn Fn(usize, usize) -> bool) -> Result<Option<Finding>, GeomError> {
+    let mut best: Option<Finding> = None;
+    each_pair(bodies, skip, &mut |pair| {
+        for (parts, a, b) in each_parts(pair) {
+            let intersects = intersect(&a, &b);
+            let apart = if intersects { 0.0 } else { separation(&a, &b) };
+            if best.is_none_or(|b| apart < b.distance || (intersects && !b.intersects)) {
+                best = Some(finding(pair, parts, &a, &b, apart, intersects));
+            }
+        }
+    })?;
+    Ok(best)
+}
+
+/// Two bodies with their indices.
+#[derive(Clone, Copy)]
+struct Pair<'a> {
+    indices: (usize, usize),
+    first: PosedBody<'a>,
+    second: PosedBody<'a>,
+}
+
+/// A part in the world, for us and for parry.
+struct Placed<'a> {
+    shape: &'a Shape,
+    world_from_shape: Isometry3<f64>,
+    parry: ParryShape,
+    pose: Pose,
+}
+
+impl<'a> Placed<'a> {
+    fn new(part: &'a Part, world_from_body: &Isometry3<f64>) -> Self {
+        let world_from_shape = world_from_body * part.body_from_shape;
+        let parry = convert::shape(&part.shape);
+        let pose = convert::pose(&world_from_shape) * parry.shape_from_parry;
+        Self { shape: &part.shape, world_from_shape, parry, pose }
+    }
+}
+
+/// Checks the bodies and visits the pairs that are not skipped.
+fn each_pair<'a>(
+    bodies: &[PosedBody<'a>],
+    skip: &dyn Fn(usize, usize) -> bool,
+    visit: &mut dyn FnMut(Pair<'a>),
+) -> Result<(), GeomError> {
+    for posed in bodies {
+        posed.body.check()?;
+        check::pose(&format!("pose of `{}`", posed.body.name), &posed.world_from_body)?;
+    }
+    for (i, first) in bodies.iter().enumerate() {
+        for (j, second) in bodies.iter().enumerate().skip(i + 1) {
+            if !skip(i, j) {
+                visit(Pair { indices: (i, j), first: *first, second: *second });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Every part of the first body with every part of the second, and their numbers.
+fn each_parts(pair: Pair<'_>) -> impl Iterator<Item = ((usize, usize), Placed<'_>, Placed<'_>)> {
+    let Pair { first, second, .. } = pair;
+    first.body.parts.iter().enumerate().flat_map(move |(i, a)| {
+        second.body.parts.iter().enumerate().map(move |(j, b)| {
+            ((i, j), Placed::new(a, &first.world_from_body), Placed::new(b, &second.world_from_body))
+        })
+    })
+}
+
+fn finding(
+    pair: Pair<'_>,
+    parts: (usize, usize),
+    a: &Placed<'_>,
+    b: &Placed<'_>,
+    distance: f64,
+    intersects: bool,
+) -> Finding {
+    let place = place::shared(a.shape, &a.world_from_shape, b.shape, &b.world_from_shape);
+    Finding { first: pair.indices.0, second: pair.indices.1, parts, distance, intersects, place }
+}
+
+/// Whether two parts touch or overlap.
+fn intersect(a: &Placed<'_>, b: &Placed<'_>) -> bool {
+    match (a.shape, b.shape) {
+        (Shape::HalfSpace { .. }, Shape::HalfSpace { .. } | Shape::Mesh(_))
+        | (Shape::Mesh(_), Shape::HalfSpace { .. }) => separation(a, b) <= 0.0,
+        (Shape::Sphere { .. }, Shape::ConvexHull(_)) | (Shape::ConvexHull(_), Shape::Sphere { .. }) => {
+            ball_and_hull(a, b) <= 0.0
+        }
+        _ => intersection_test(&a.pose, &*a.parry.shape, &b.pose, &*b.parry.shape)
+            .map_or(true, |answer| answer.intersecting),
+    }
+}
+
+/// Distance of two parts, 0 when they touch or overlap.
+fn separation(a: &Placed<'_>, b: &Placed<'_>) -> f64 {
+    match (a.shape, b.shape) {
+        (Shape::HalfSpace { .. }, Shape::HalfSpace { .. }) => facing_away(a, b),
+        (Shape::HalfSpace { .. }, Shape::Mesh(_)) => over_plane(a, b),
+        (Shape::Mesh(_), Shape::HalfSpace { .. }) => over_plane(b, a),
+        (Shape::Sphere { .. }, Shape::ConvexHull(_)) | (Shape::ConvexHull(_), Shape::Sphere { .. }) => {
+            ball_and_hull(a, b)
+        }
+        _ => distance(&a.pose, &*a.parry.shape, &b.pose, &*b.parry.shape).map_or(0.0, |answer| answer.distance),
+    }
+}
+
+/// A ball and a hull as general convex shapes: parry's own choice for this pair asserts that an iteration converges.
+fn ball_and_hull(a: &Placed<'_>, b: &Placed<'_>) -> f64 {
+    match (a.parry.shape.as_support_map(), b.parry.shape.as_support_map()) {
+        (Some(map_a), Some(map_b)) => distance_support_map_support_map(&a.pose.inv_mul(&b.pose), map_a, map_b),
+        _ => 0.0,
+    }
+}
+
+/// Gap between two half spaces: positive only when they face away from each other.
+fn facing_away(a: &Placed<'_>, b: &Placed<'_>) -> f64 {
+    let (Shape::HalfSpace { normal: n }, Shape::HalfSpace { normal: m }) = (a.shape, b.shape) else { return 0.0 };
+    let (n, m) = (a.world_from_shape * n, b.world_from_shape * m);
+    if (n.as_ref() + m.as_ref()).norm() > 1e-12 {
+        return 0.0;
+    }
+    let apart = b.world_from_shape.translation.vector - a.world_from_shape.translation.vector;
+    n.dot(&apart).max(0.0)
+}
+
+/// Height of a mesh over a half space: that of its lowest vertex.
+fn over_plane(plane: &Placed<'_>, mesh: &Placed<'_>) -> f64 {
+    let (Shape::HalfSpace { normal }, Shape::Mesh(mesh_shape)) = (plane.shape, mesh.shape) else { return 0.0 };
+    let height = |p: &Point3<f64>| {
+        normal.dot(&plane.world_from_shape.inverse_transform_point(&(mesh.world_from_shape * p)).coords)
+    };
+    mesh_shape.vertices().iter().map(height).fold(f64::INFINITY, f64::min).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn overlaps_are_found_and_skipped_pairs_are_not() {
+        let ball = Body::single("ball", Shape::sphere(0.5).unwrap()).unwrap();
+        let floor = Body::single("floor", Shape::half_space(Vector3::z_axis()).unwrap()).unwrap();
+        let at = |body, x, z| PosedBody { body, world_from_body: Isometry3::translation(x, 0.0, z) };
+        let bodies = [at(&floor, 0.0, 0.0), at(&ball, 0.0, 0.25), at(&ball, 0.75, 1.0), at(&ball, 5.0, 1.0)];
+        let all = intersections(&bodies, &|_, _| false).unwrap();
+        let pairs: Vec<_> = all.iter().map(|f| (f.first, f.second)).collect();
+        assert_eq!(pairs, [(0, 1)]);
+        let near = nearest(&bodies, &|i, j| (i, j) == (0, 1)).unwrap().unwrap();
+        assert_eq!((near.first, near.second, near.intersects), (1, 2, false));
+        assert!((near.distance - (2.0 * 0.75_f64.powi(2)).sqrt() + 1.0).abs() < 1e-9);
+        assert_eq!(nearest(&bodies, &|_, _| true).unwrap(), None);
+        assert!(nearest(&[at(&ball, f64::NAN, 0.0)], &|_, _| false).is_err());
+    }
+
+    #[test]
+    fn half_spaces_and_meshes() {
+        let floor = Body::single("floor", Shape::half_space(Vector3::z_axis()).unwrap()).unwrap();
+        let roof = Body::single("roof", Shape::half_space(-Vector3::z_axis()).unwrap()).unwrap();
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.5], [0.0, 1.0, 0.5]].map(Point3::from);
+        let mesh = crate::TriangleMesh::new("t", &corners, &[[0, 1, 2]]).unwrap();
+        let mesh = Body::single("mesh", Shape::Mesh(mesh.into())).unwrap();
+        let at = |body, z| PosedBody { body, world_from_body: Isometry3::translation(0.0, 0.0, z) };
+        let gap = |a, b| nearest(&[a, b], &|_, _| false).unwrap().unwrap();
+        assert!((gap(at(&floor, 0.0), at(&roof, 2.0)).distance - 2.0).abs() < 1e-12);
+        assert!(gap(at(&floor, 0.0), at(&floor, 2.0)).intersects);
+        assert!((gap(at(&mesh, 0.5), at(&floor, 0.0)).distance - 0.5).abs() < 1e-12);
+        assert!(gap(at(&floor, 0.0), at(&mesh, -0.5)).intersects);
+    }
+}

@@ -1,0 +1,239 @@
+//! Commands and options.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::builder::RangedU64ValueParser;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::problem_file::{DistanceName, SamplerName};
+
+/// Plan how a PR2 pushes, grasps, carries and places things.
+///
+/// DARRT searches a tree of states whose edges are whole actions (primitives): driving, moving the arm, pushing,
+/// picking, carrying, placing. The plan is checked by a separate verifier, printed as a table, saved as JSON, and drawn.
+#[derive(Debug, Parser)]
+#[command(name = "darrt", version, after_help = EXAMPLES, propagate_version = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  darrt problems                      the built-in problems of the paper
+  darrt plan plate3                   solve one; writes plate3.plan.json and plate3.html
+  darrt show plate3.plan.json         draw a plan again
+  darrt check plate3.plan.json        judge a plan, for example one edited by hand
+  darrt problems --print plate3 > mine.toml
+                                      copy a problem, edit it, then: darrt plan mine.toml
+
+Exit codes:
+  0    solved, or the plan is accepted
+  1    not solved within the budget
+  2    bad input or usage
+  3    the verifier refuses the plan
+  4    the output cannot be written
+  130  interrupted";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Solve a problem: print the steps, write the plan and a picture
+    Plan(PlanOptions),
+    /// Judge a plan file with the verifier
+    Check(CheckOptions),
+    /// List the built-in problems, or print one to copy and edit
+    Problems(ProblemsOptions),
+    /// Draw a problem or a plan
+    Show(ShowOptions),
+    /// Print the JSON Schema of problem files or plan files
+    Schema(SchemaOptions),
+}
+
+const PLAN_EXAMPLES: &str = "\
+Examples:
+  darrt plan plate1                                 until solved or out of time
+  darrt plan plate3 --seed 7 -o p.json              another random seed, another file
+  darrt plan plate3 --iterations 20000 --restart 5000 --time-limit 3600
+                                                    limited by work, not by the clock
+  darrt plan mine.toml --stats                      see where the attempts end
+
+The same problem, seed and options give the same plan file byte for byte, with any number of threads, as long as the
+time limit is not what ends the search.";
+
+/// Options of `darrt plan`.
+#[derive(Debug, Args)]
+#[command(after_help = PLAN_EXAMPLES)]
+pub struct PlanOptions {
+    /// Name of a built-in problem, or a problem file
+    pub problem: String,
+    /// Seed of every random choice
+    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    pub seed: u64,
+    /// Stop after this many seconds [default: as the problem says]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub time_limit: Option<Duration>,
+    /// Stop after this many iterations, all attempts together [default: as the problem says]
+    #[arg(long, value_name = "NUMBER", value_parser = RangedU64ValueParser::<u64>::new().range(1..))]
+    pub iterations: Option<u64>,
+    /// Start over with an empty tree after this many iterations [default: as the problem says]
+    #[arg(long, value_name = "ITERATIONS", value_parser = RangedU64ValueParser::<u64>::new().range(1..))]
+    pub restart: Option<u64>,
+    /// What a sample specifies [default: as the problem says]
+    #[arg(long, value_enum)]
+    pub sampler: Option<SamplerChoice>,
+    /// What makes a state of the tree the nearest one [default: as the problem says]
+    #[arg(long, value_enum)]
+    pub distance: Option<DistanceChoice>,
+    /// Attempts that run at the same time, 1 to 256; helps only with restarts
+    #[arg(long, default_value_t = 1, value_name = "NUMBER", value_parser = RangedU64ValueParser::<usize>::new().range(1..=256))]
+    pub threads: usize,
+    /// Write the plan here [default: PROBLEM.plan.json in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write the picture here, .html or .svg [default: beside the plan, .html]
+    #[arg(long, value_name = "FILE", conflicts_with = "no_picture")]
+    pub picture: Option<PathBuf>,
+    /// Write no picture
+    #[arg(long)]
+    pub no_picture: bool,
+    /// Print where the attempts of every primitive ended, and which bodies were in the way
+    #[arg(long)]
+    pub stats: bool,
+    /// Print nothing but errors
+    #[arg(short, long, conflicts_with = "stats")]
+    pub quiet: bool,
+}
+
+/// Options of `darrt check`.
+#[derive(Debug, Args)]
+pub struct CheckOptions {
+    /// The plan file
+    pub plan: PathBuf,
+    /// Print the steps of the plan too
+    #[arg(long)]
+    pub steps: bool,
+    /// Print nothing but errors
+    #[arg(short, long, conflicts_with = "steps")]
+    pub quiet: bool,
+}
+
+/// Options of `darrt problems`.
+#[derive(Debug, Args)]
+pub struct ProblemsOptions {
+    /// Print this built-in problem as a file to copy and edit
+    #[arg(long, value_name = "NAME")]
+    pub print: Option<String>,
+}
+
+/// Options of `darrt show`.
+#[derive(Debug, Args)]
+pub struct ShowOptions {
+    /// Name of a built-in problem, a problem file, or a plan file (.json)
+    pub source: String,
+    /// Write the picture here, .html or .svg [default: PROBLEM.html in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// Options of `darrt schema`.
+#[derive(Debug, Args)]
+pub struct SchemaOptions {
+    /// Which kind of file
+    #[arg(value_enum)]
+    pub kind: SchemaKind,
+}
+
+/// The kinds of file with a schema.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SchemaKind {
+    /// Problem files (TOML)
+    Problem,
+    /// Plan files (JSON)
+    Plan,
+}
+
+/// The samplers, as the command line spells them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SamplerChoice {
+    /// Either the robot or the objects (the paper)
+    RobotOrObjects,
+    /// A random subset of all that moves
+    RandomSubset,
+    /// All that moves
+    Full,
+}
+
+impl From<SamplerChoice> for SamplerName {
+    fn from(choice: SamplerChoice) -> Self {
+        match choice {
+            SamplerChoice::RobotOrObjects => Self::RobotOrObjects,
+            SamplerChoice::RandomSubset => Self::RandomSubset,
+            SamplerChoice::Full => Self::Full,
+        }
+    }
+}
+
+/// The distances, as the command line spells them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DistanceChoice {
+    /// The robot visits the objects, nearest first (the paper)
+    Greedy,
+    /// The sum of all ways
+    Euclidean,
+    /// The robot visits the objects in the best order
+    ExactTour,
+}
+
+impl From<DistanceChoice> for DistanceName {
+    fn from(choice: DistanceChoice) -> Self {
+        match choice {
+            DistanceChoice::Greedy => Self::Greedy,
+            DistanceChoice::Euclidean => Self::Euclidean,
+            DistanceChoice::ExactTour => Self::ExactTour,
+        }
+    }
+}
+
+/// A positive time in seconds.
+fn seconds(text: &str) -> Result<Duration, String> {
+    const MOST: f64 = 1e9;
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if value > 0.0 && value <= MOST {
+        return Duration::try_from_secs_f64(value).map_err(|error| error.to_string());
+    }
+    Err(format!("{value} is not above 0 and at most {MOST:e} seconds"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn times_are_positive_and_finite() {
+        assert_eq!(seconds("1.5").unwrap(), Duration::from_millis(1500));
+        for bad in ["0", "-1", "nan", "inf", "1e10", "soon", ""] {
+            assert!(seconds(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn choices_are_spelled_as_in_problem_files() {
+        for choice in SamplerChoice::value_variants() {
+            let name = serde_json::to_value(SamplerName::from(*choice)).unwrap();
+            assert_eq!(name, choice.to_possible_value().unwrap().get_name());
+        }
+        for choice in DistanceChoice::value_variants() {
+            let name = serde_json::to_value(DistanceName::from(*choice)).unwrap();
+            assert_eq!(name, choice.to_possible_value().unwrap().get_name());
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! `darrt plan`: solve, verify, print, write.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use darrt_core::budget::{Cancel, Stop};
+
+use super::args::PlanOptions;
+use super::exit::{Exit, Failure};
+use super::output::{self, Output};
+use super::progress::Progress;
+use super::{check, diagnosis, statistics, steps};
+use crate::picture::{self, Format, Story};
+use crate::plan_file::PlanFile;
+use crate::planning::{self, PlanRequest, PlanResult};
+use crate::problem_file::ProblemFile;
+use crate::verify;
+
+/// Plans and reports.
+///
+/// # Errors
+/// Every end but a verified plan that is written, with its exit code.
+pub(super) fn run(options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
+    let problem = ProblemFile::open(&options.problem)?;
+    let files = Files::choose(options, &problem.name)?;
+    let request = request(options, problem);
+    let cancel = Cancel::new();
+    listen(&cancel);
+    let mut progress = Progress::start(&request.problem.name, limit(&request), options.quiet);
+    let result = planning::plan(&request, &cancel, &mut progress)
+        .map_err(|error| Failure::input(located(&options.problem, &error.to_string())))?;
+    progress.say("verifying");
+    let proof = result.plan.as_ref().map(verify::verify);
+    progress.finish();
+    if options.stats {
+        output.print(&statistics::report(&result.accounts))?;
+    }
+    let (Some(plan), Some(proof)) = (&result.plan, proof) else { return Err(failed(&request, &result)) };
+    let proof = proof.map_err(|refusal| Failure::new(Exit::Refused, format!("{}: {refusal}", options.problem)))?;
+    let story = Story::of_plan(plan)?;
+    if !options.quiet {
+        output.print(&summary(&request, &result))?;
+        output.print(&steps::table(&story))?;
+        output.print(&check::words(&proof))?;
+    }
+    files.write(plan, &story)?;
+    if !options.quiet {
+        output.print(&files.words())?;
+    }
+    Ok(Exit::Solved)
+}
+
+fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
+    PlanRequest {
+        problem,
+        seed: options.seed,
+        threads: options.threads,
+        time_limit: options.time_limit,
+        iterations: options.iterations,
+        restart: options.restart,
+        sampler: options.sampler.map(Into::into),
+        distance: options.distance.map(Into::into),
+    }
+}
+
+fn limit(request: &PlanRequest) -> Option<Duration> {
+    request.time_limit.or_else(|| Duration::try_from_secs_f64(request.problem.budget.time_limit_s).ok())
+}
+
+/// Cancels on Ctrl-C and on a request to terminate; without a handler the system's default does it less politely.
+fn listen(cancel: &Cancel) {
+    let cancel = cancel.clone();
+    let _ = ctrlc::set_handler(move || cancel.cancel());
+}
+
+/// The message with the name of the problem in front, unless it says where by itself.
+fn located(problem: &str, message: &str) -> String {
+    if message.contains(problem) { message.to_owned() } else { format!("{problem}: {message}") }
+}
+
+fn failed(request: &PlanRequest, result: &PlanResult) -> Failure {
+    let exit = if result.stop == Stop::Cancelled { Exit::Interrupted } else { Exit::NotSolved };
+    let name = &request.problem.name;
+    Failure::new(exit, format!("{name}: no plan found (seed {}): {}", request.seed, diagnosis::explain(result)))
+}
+
+fn summary(request: &PlanRequest, result: &PlanResult) -> String {
+    format!(
+        "{}: solved in {:.1} s (seed {}, {} iterations, {} restarts, largest tree {} nodes)",
+        request.problem.name,
+        result.elapsed.as_secs_f64(),
+        request.seed,
+        result.iterations,
+        result.restarts,
+        result.nodes
+    )
+}
+
+/// The files to write, checked before the work.
+struct Files {
+    plan: PathBuf,
+    picture: Option<(PathBuf, Format)>,
+}
+
+impl Files {
+    fn choose(options: &PlanOptions, name: &str) -> Result<Self, Failure> {
+        let default = || PathBuf::from(format!("{}.plan.json", output::file_stem(name)));
+        let plan = options.output.clone().unwrap_or_else(default);
+        let picture = match (&options.picture, options.no_picture) {
+            (_, true) => None,
+            (Some(path), _) => Some(path.clone()),
+            (None, _) => Some(beside(&plan)),
+        };
+        let plan = output::writable(&plan)?;
+        let picture = match picture {
+            Some(path) => Some((output::writable(&path)?, Format::of_path(&path)?)),
+            None => None,
+        };
+        if picture.as_ref().is_some_and(|(path, _)| *path == plan) {
+            let text = format!("{}: cannot be both the plan and the picture", plan.display());
+            return Err(Failure::input(text));
+        }
+        Ok(Self { plan, picture })
+    }
+
+    fn write(&self, plan: &PlanFile, story: &Story) -> Result<(), Failure> {
+        plan.write(&self.plan)?;
+        match &self.picture {
+            Some((path, format)) => output::write_file(path, &picture::draw(story, *format)),
+            None => Ok(()),
+        }
+    }
+
+    fn words(&self) -> String {
+        let plan = format!("plan:     {}", self.plan.display());
+        match &self.picture {
+            Some((path, _)) => format!("{plan}\npicture:  {}", path.display()),
+            None => plan,
+        }
+    }
+}
+
+/// The picture that belongs to a plan file: `a/b.plan.json` and `a/b.json` have `a/b.html`.
+fn beside(plan: &Path) -> PathBuf {
+    let bare = plan.with_extension("");
+    let bare = if bare.extension().is_some_and(|ending| ending == "plan") { bare.with_extension("") } else { bare };
+    let mut name = bare.into_os_string();
+    name.push(".html");
+    PathBuf::from(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_picture_lies_beside_the_plan() {
+        for (plan, picture) in [
+            ("plate3.plan.json", "plate3.html"),
+            ("a/p.json", "a/p.html"),
+            ("a.b/p", "a.b/p.html"),
+            ("v1.2.json", "v1.2.html"),
+        ] {
+            assert_eq!(beside(Path::new(plan)), Path::new(picture));
+        }
+    }
+
+    #[test]
+    fn a_message_names_the_problem_once() {
+        assert_eq!(located("a.toml", "a.toml: wrong"), "a.toml: wrong");
+        assert_eq!(located("a.toml", "wrong"), "a.toml: wrong");
+    }
+}

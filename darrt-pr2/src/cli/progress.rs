@@ -1,0 +1,119 @@
+//! The line that shows that the planner works; on a terminal only.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use darrt_core::observe::{Event, Observer};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Time between two drawings of the line.
+const PERIOD: Duration = Duration::from_millis(100);
+
+/// Follows a planner on the standard error.
+#[derive(Debug)]
+pub(super) struct Progress {
+    bar: ProgressBar,
+    counts: Counts,
+    deadline: Option<Instant>,
+    next: Instant,
+}
+
+/// What the line says.
+#[derive(Debug, Clone, PartialEq)]
+struct Counts {
+    iterations: u64,
+    nodes: usize,
+    nearest: f64,
+    restarts: u64,
+}
+
+impl Progress {
+    /// A line about `problem` with so much time left; hidden when the standard error is not a terminal or `is_quiet`.
+    pub(super) fn start(problem: &str, limit: Option<Duration>, is_quiet: bool) -> Self {
+        let target = if is_quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let bar = ProgressBar::with_draw_target(None, target);
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {prefix}: {wide_msg}") {
+            bar.set_style(style);
+        }
+        bar.set_prefix(problem.to_owned());
+        bar.set_message("preparing");
+        bar.enable_steady_tick(PERIOD);
+        let now = Instant::now();
+        let counts = Counts { iterations: 0, nodes: 1, nearest: f64::INFINITY, restarts: 0 };
+        Self { bar, counts, deadline: limit.and_then(|limit| now.checked_add(limit)), next: now }
+    }
+
+    /// Shows what is done after the search.
+    pub(super) fn say(&self, what: &'static str) {
+        self.bar.set_message(what);
+    }
+
+    /// Takes the line away.
+    pub(super) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.finish();
+    }
+}
+
+impl Counts {
+    fn add(&mut self, event: &Event<'_>) {
+        match event {
+            Event::AttemptStarted { attempt } => self.restarts = self.restarts.max(*attempt),
+            Event::Iteration { nodes, nearest_to_goal, .. } => {
+                self.iterations += 1;
+                self.nodes = *nodes;
+                self.nearest = self.nearest.min(*nearest_to_goal);
+            }
+            _ => {}
+        }
+    }
+
+    fn line(&self, left: Option<Duration>) -> String {
+        let mut line = format!("{} iterations, tree {}", self.iterations, self.nodes);
+        if self.nearest.is_finite() {
+            line.push_str(&format!(", {:.2} m to the goal", self.nearest));
+        }
+        if self.restarts > 0 {
+            line.push_str(&format!(", {} restarts", self.restarts));
+        }
+        if let Some(left) = left {
+            line.push_str(&format!(", {} s left", left.as_secs()));
+        }
+        line
+    }
+}
+
+impl Observer for Progress {
+    fn on_event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        self.counts.add(event);
+        let now = Instant::now();
+        if !self.bar.is_hidden() && now >= self.next {
+            self.next = now + PERIOD;
+            self.bar.set_message(self.counts.line(self.deadline.map(|end| end.saturating_duration_since(now))));
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_adds_up_the_attempts() {
+        let mut counts = Counts { iterations: 0, nodes: 1, nearest: f64::INFINITY, restarts: 0 };
+        assert_eq!(counts.line(None), "0 iterations, tree 1");
+        for (attempt, nodes, nearest_to_goal) in [(0, 5, 2.0), (0, 9, 1.5), (1, 2, 3.0)] {
+            counts.add(&Event::AttemptStarted { attempt });
+            let (iteration, added, blame) = (1, 1, None);
+            counts.add(&Event::Iteration { attempt, iteration, nodes, added, nearest_to_goal, blame });
+        }
+        let line = counts.line(Some(Duration::from_millis(4900)));
+        assert_eq!(line, "3 iterations, tree 2, 1.50 m to the goal, 1 restarts, 4 s left");
+    }
+}

@@ -1,0 +1,71 @@
+//! `darrt show`: draw a problem or a plan.
+
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use super::args::ShowOptions;
+use super::exit::{Exit, Failure};
+use super::output::{self, Output};
+use super::steps;
+use crate::picture::{self, Format, Story};
+use crate::plan_file::PlanFile;
+use crate::problem_file::{ProblemFile, builtin};
+
+/// Draws the picture; for a plan prints its steps too. The plan is not judged.
+///
+/// # Errors
+/// What cannot be read, built or written.
+pub(super) fn run(options: &ShowOptions, output: &mut Output) -> Result<Exit, Failure> {
+    let story = story(&options.source)?;
+    let default = || PathBuf::from(format!("{}.html", output::file_stem(&story.problem.name)));
+    let path = options.output.clone().unwrap_or_else(default);
+    let format = Format::of_path(&path)?;
+    let place = output::writable(&path)?;
+    output::write_file(&place, &picture::draw(&story, format))?;
+    if !story.steps.is_empty() {
+        output.print(&steps::table(&story))?;
+    }
+    output.print(&format!("picture:  {}", path.display()))?;
+    Ok(Exit::Solved)
+}
+
+fn story(source: &str) -> Result<Story, Failure> {
+    if builtin::canonical_name(source).is_some() || !is_plan(Path::new(source)) {
+        return Ok(Story::of_problem(&ProblemFile::open(source)?)?);
+    }
+    let plan = PlanFile::read(source)?;
+    plan.problem.validate(source)?;
+    Story::of_plan(&plan).map_err(|error| Failure::input(format!("{source}: {error}")))
+}
+
+/// Whether a file is a plan rather than a problem: its name ends in `.json`, or it begins as JSON does.
+fn is_plan(path: &Path) -> bool {
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
+        return true;
+    }
+    // Only regular files: anything else might never answer.
+    if !path.is_file() {
+        return false;
+    }
+    let mut head = [0; 256];
+    let length = std::fs::File::open(path).and_then(|mut file| file.read(&mut head)).unwrap_or(0);
+    head.get(..length).is_some_and(|head| head.trim_ascii_start().starts_with(b"{"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plans_are_told_from_problems() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).unwrap();
+            path
+        };
+        assert!(is_plan(&file("a.JSON", "")) && is_plan(&file("plan", "\n {\"format\"")));
+        assert!(!is_plan(&file("b.toml", "format = 1")) && !is_plan(folder.path()));
+        assert!(!is_plan(&folder.path().join("missing")));
+    }
+}

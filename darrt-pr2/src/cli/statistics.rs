@@ -1,0 +1,84 @@
+//! The planner's balanced counts as tables.
+
+use std::fmt::Write as _;
+
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use darrt_core::observe::accounts::{Accounts, Bucket};
+
+/// Pairs of bodies that are listed.
+const PAIRS: usize = 10;
+/// Width of the table of counts in characters.
+const WIDTH: u16 = 118;
+
+/// Where the attempts of every primitive ended, and which bodies were most often in the way.
+pub(super) fn report(accounts: &Accounts) -> String {
+    let mut text = format!(
+        "{} extensions: {} met their target, {} added nothing; {} states added; {} plans refused by the verifier\n\n",
+        accounts.extensions, accounts.met, accounts.empty, accounts.added, accounts.refused
+    );
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{}", counts(accounts));
+    let blocks = accounts.worst_blocks(PAIRS);
+    if !blocks.is_empty() {
+        let _ = write!(text, "\n{}", pairs(&blocks));
+    }
+    text
+}
+
+/// One column per primitive, one row per bucket that is not empty, and the sum of all.
+fn counts(accounts: &Accounts) -> String {
+    let rows: Vec<_> = accounts.rows().collect();
+    let mut table = Table::new();
+    table.load_preset(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
+    let names = rows.iter().map(|(name, _)| name.replace('-', " "));
+    table.set_header(std::iter::once("each extension ends in".to_owned()).chain(names));
+    for bucket in Bucket::ALL {
+        let of = |counts: &[u64; Bucket::ALL.len()]| counts.get(bucket as usize).copied().unwrap_or(0);
+        if rows.iter().any(|(_, counts)| of(counts) > 0) {
+            let cells = rows.iter().map(|(_, counts)| shown(of(counts)));
+            table.add_row(std::iter::once(bucket.heading().to_owned()).chain(cells));
+        }
+    }
+    let sums = rows.iter().map(|(_, counts)| counts.iter().sum::<u64>().to_string());
+    table.add_row(std::iter::once("all".to_owned()).chain(sums));
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table.trim_fmt()
+}
+
+fn shown(count: u64) -> String {
+    if count == 0 { "\u{b7}".to_owned() } else { count.to_string() }
+}
+
+fn pairs(blocks: &[(&(String, String), u64)]) -> String {
+    let mut table = Table::new();
+    table.load_preset(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_header(["most often in the way", "and", "times"]);
+    for ((first, second), count) in blocks {
+        table.add_row([first.clone(), second.clone(), count.to_string()]);
+    }
+    if let Some(column) = table.column_mut(2) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table.trim_fmt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn buckets_are_rows_and_columns_sum_to_the_extensions() {
+        let mut accounts = Accounts::new(vec!["Push", "Straight-Line-Arm-Transit"]);
+        accounts.count(&[Bucket::Accepted, Bucket::NotUseful], 3, true, None);
+        accounts.count(&[Bucket::NoContact, Bucket::NotUseful], 0, false, None);
+        let text = report(&accounts);
+        assert!(text.starts_with("2 extensions: 1 met their target, 1 added nothing; 3 states added"), "{text}");
+        let line = |word: &str| text.lines().find(|line| line.trim_start().starts_with(word)).unwrap().to_owned();
+        assert_eq!(line("accepted").split_whitespace().collect::<Vec<_>>(), ["accepted", "1", "\u{b7}"]);
+        assert_eq!(line("all").split_whitespace().collect::<Vec<_>>(), ["all", "2", "2"]);
+        assert!(!text.contains("unreachable") && !text.contains("in the way"));
+    }
+}

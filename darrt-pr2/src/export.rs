@@ -1,0 +1,150 @@
+//! From the planner's plan to a plan file: every step as waypoints, every joint by name, every contact with its reason.
+
+use std::collections::BTreeMap;
+
+use darrt_core::motion::{Instance, Motion};
+use darrt_core::plan::{Plan, Step as PlanStep};
+use darrt_primitives::mode::{Mode, TouchReason};
+
+use crate::arm::Side;
+use crate::model::URDF;
+use crate::plan_file::{
+    AllowedContact, ContactReason, Hold, JointTable, PlanFile, PlanFormat, PlannerFacts, Pose, Step, VERSION, Waypoint,
+};
+use crate::planning_error::PlanningError;
+use crate::problem_file::{PrimitiveName, ProblemFile};
+use crate::world::{World, WorldState};
+use darrt_primitives::kinematics::RobotDescription;
+
+/// Largest travel of any point of the robot between two waypoints, metres.
+const WAYPOINT_SPACING: f64 = 0.05;
+
+/// Writes plans of one problem.
+#[derive(Debug)]
+pub struct Exporter {
+    joints: JointTable,
+    problem: ProblemFile,
+}
+
+impl Exporter {
+    /// For plans of `problem`.
+    ///
+    /// # Errors
+    /// [`PlanningError`] when the robot's description cannot be read.
+    pub fn new(problem: &ProblemFile, world: &World) -> Result<Self, PlanningError> {
+        let description = match &problem.robot.urdf {
+            Some(path) => RobotDescription::from_file(path),
+            None => RobotDescription::from_text(URDF),
+        }
+        .map_err(crate::model::ModelError::from)?;
+        let joints = JointTable::new(&description, world.manipulator().model().tree());
+        Ok(Self { joints, problem: problem.clone() })
+    }
+
+    /// The plan as a file.
+    pub fn export(&self, m: &World, plan: &Plan<World>, seed: u64, planner: PlannerFacts) -> PlanFile {
+        let mut before = plan.start().clone();
+        let mut steps = Vec::with_capacity(plan.steps().len());
+        for step in plan.steps() {
+            let (written, end) = self.step(m, step, &before);
+            steps.push(written);
+            before = end;
+        }
+        PlanFile {
+            format: PlanFormat::DarrtPlan,
+            version: VERSION,
+            problem: self.problem.clone(),
+            seed,
+            planner,
+            start: self.waypoint(m, plan.start(), plan.start().mode.gap_m()),
+            steps,
+        }
+    }
+
+    /// One step and the state it ends in.
+    fn step(&self, m: &World, step: &PlanStep<World>, before: &WorldState) -> (Step, WorldState) {
+        let instance = &step.instance;
+        let inside = instance.at(m, f64::MIN_POSITIVE, before);
+        let mut waypoints = vec![self.waypoint(m, before, before.mode.gap_m())];
+        let gap_m = inside.mode.gap_m();
+        if gap_m != before.mode.gap_m() {
+            waypoints.push(self.waypoint(m, before, gap_m));
+        }
+        let mut end = before.clone();
+        for t in parameters(&*instance.motion, step.until) {
+            instance.motion.at_into(m, t, &mut end);
+            waypoints.push(self.waypoint(m, &end, gap_m));
+        }
+        if end.mode.gap_m() != gap_m {
+            waypoints.push(self.waypoint(m, &end, end.mode.gap_m()));
+        }
+        let name = |id| m.movable(id).map(|o| o.body.name.to_string());
+        let primitive = PrimitiveName::ALL.into_iter().find(|p| p.as_str() == instance.label);
+        let primitive = primitive.unwrap_or(PrimitiveName::ArmTransit);
+        let written = Step {
+            primitive,
+            object: instance.object.and_then(name),
+            holds: hold(m, &inside.mode),
+            pushes: instance.object.and_then(name).filter(|_| primitive == PrimitiveName::Push),
+            allowed_contacts: contacts(m, instance, &inside.mode),
+            waypoints,
+        };
+        (written, end)
+    }
+
+    fn waypoint(&self, m: &World, state: &WorldState, gap_m: f64) -> Waypoint {
+        let body = m.manipulator().whole_body(&state.robot, gap_m);
+        let joints = self.joints.complete(&m.manipulator().model().joint_values(&body));
+        let poses = m.movables().iter().zip(&state.objects);
+        let objects: BTreeMap<_, _> = poses.map(|(o, pose)| (o.body.name.to_string(), Pose::from(*pose))).collect();
+        Waypoint { base: state.robot.base, joints, objects }
+    }
+}
+
+/// The parameters of the waypoints: all knots up to `until`, and more between them so that none is far from the next.
+fn parameters(motion: &dyn Motion<World>, until: f64) -> Vec<f64> {
+    let mut out = Vec::new();
+    let mut last = 0.0;
+    let knots = motion.knots().iter().copied().filter(|t| *t > 0.0 && *t < until);
+    for t in knots.chain([until]) {
+        let steps = ((t - last) * motion.length() / WAYPOINT_SPACING).ceil().clamp(1.0, 10_000.0);
+        let mut i = 1.0;
+        while i < steps {
+            out.push(last + (t - last) * i / steps);
+            i += 1.0;
+        }
+        out.push(t);
+        last = t;
+    }
+    out
+}
+
+fn hold(m: &World, mode: &Mode) -> Option<Hold> {
+    let held = mode.held()?;
+    let object = m.movable(held.object)?.body.name.to_string();
+    Some(Hold { object, tool_from_object: Pose::from(held.tool_from_object) })
+}
+
+/// What may touch in this step besides what rests on its support.
+fn contacts(m: &World, instance: &Instance<World>, mode: &Mode) -> Vec<AllowedContact> {
+    let side: Side = m.manipulator().arm().side;
+    let name = |id| m.movable(id).map(|o| o.body.name.to_string());
+    let mut out = Vec::new();
+    let fingers = instance.contacts.fingers.or_else(|| Some((mode.held()?.object, TouchReason::Grasp)));
+    if let Some((object, reason)) = fingers
+        && let Some(object) = name(object)
+    {
+        let reason = match reason {
+            TouchReason::Push => ContactReason::Push,
+            TouchReason::Retreat => ContactReason::Retreat,
+            TouchReason::Grasp | TouchReason::Support => ContactReason::Grasp,
+        };
+        out.extend(AllowedContact::fingers(side, &object, reason));
+    }
+    if let Some((object, surface)) = instance.contacts.support
+        && let (Some(object), Some(support)) = (name(object), m.supports().get(surface.index()))
+    {
+        out.extend(support.bodies.iter().map(|body| AllowedContact::support(&object, body)));
+    }
+    out
+}

@@ -1,0 +1,102 @@
+//! The grasps of a problem file's objects.
+
+use darrt_primitives::error::PrimitiveError;
+use darrt_primitives::grasp::footprint::Footprint;
+use darrt_primitives::grasp::overhead::{OverheadGrasps, WallGrasps, WallOptions};
+use darrt_primitives::grasp::rim::{RimGrasps, RimOptions};
+use darrt_primitives::grasp::side::SideGrasps;
+use darrt_primitives::grasp::{GraspFamily as Family, Grip};
+use darrt_primitives::manipulator::Hand;
+
+use crate::problem_file::{GraspFamily, Object, ShapeSpec};
+
+/// Every family that `object` names, for the gripper `hand`.
+///
+/// # Errors
+/// [`PrimitiveError`] when the object does not fit between the fingers or a parameter is out of range.
+pub fn families(object: &Object, hand: &dyn Hand) -> Result<Vec<Box<dyn Family>>, PrimitiveError> {
+    object.grasps.iter().map(|family| one(*family, object, hand)).collect()
+}
+
+/// How far the object is lifted by the families it names: least and best, metres. Half the wish is enough.
+pub fn lift_m(object: &Object) -> [f64; 2] {
+    let lift = |family: &GraspFamily| match family {
+        GraspFamily::Rim => object.rim.lift_m,
+        GraspFamily::Overhead => object.overhead.lift_m,
+        GraspFamily::Side => object.side.lift_m,
+    };
+    let best = object.grasps.iter().map(lift).fold(0.0, f64::max);
+    [best / 2.0, best]
+}
+
+fn one(family: GraspFamily, object: &Object, hand: &dyn Hand) -> Result<Box<dyn Family>, PrimitiveError> {
+    let grip = |open_gap: f64, closed_gap: f64, approach: f64| Grip {
+        open_gap,
+        tip_ahead: hand.tip_beyond_tool_m(closed_gap),
+        approach,
+    };
+    let missing = |what: &str| PrimitiveError::Unknown { what: "shape for these grasps", name: what.to_owned() };
+    Ok(match (family, &object.shape) {
+        (GraspFamily::Rim, ShapeSpec::Cylinder { radius, height } | ShapeSpec::Bowl { radius, height, .. }) => {
+            let rim = &object.rim;
+            let options = RimOptions {
+                insertion: rim.insertion_m,
+                grid_tilts: radians(&rim.tilts_deg),
+                min_tilt: least(&rim.tilts_deg).to_radians(),
+                max_tilt: most(&rim.tilts_deg).to_radians(),
+                grid_azimuths: rim.azimuths,
+            };
+            let grip = grip(rim.opening_m, *height, rim.approach_m);
+            Box::new(RimGrasps::new(*radius, *height, grip, options)?)
+        }
+        (GraspFamily::Overhead, ShapeSpec::Bowl { radius, height, wall }) => {
+            let over = &object.overhead;
+            let max_lean = over.tilts_deg.iter().fold(0.0_f64, |most, t| most.max(t.abs())).to_radians();
+            let options = WallOptions {
+                depth: over.insertion_m,
+                max_lean,
+                grid_leans: radians(&over.tilts_deg),
+                grid_azimuths: over.azimuths,
+                ..WallOptions::default()
+            };
+            let grip = grip(over.opening_m, *wall, over.approach_m);
+            Box::new(WallGrasps::new(*radius, *height, *wall, grip, options)?)
+        }
+        (GraspFamily::Overhead, shape) => {
+            let over = &object.overhead;
+            let (footprint, height, width) = outline(shape).ok_or_else(|| missing(shape.kind()))?;
+            let grip = grip(over.opening_m, width, over.approach_m);
+            Box::new(OverheadGrasps::new(footprint, height, over.insertion_m, grip)?)
+        }
+        (GraspFamily::Side, shape) => {
+            let side = &object.side;
+            let (footprint, height, width) = outline(shape).ok_or_else(|| missing(shape.kind()))?;
+            let grip = grip(side.opening_m, width, side.approach_m);
+            Box::new(SideGrasps::new(footprint, height, side.insertion_m, 0.0, grip)?)
+        }
+        (GraspFamily::Rim, shape) => return Err(missing(shape.kind())),
+    })
+}
+
+/// Outline, height and least width of a shape that fingers can close around.
+fn outline(shape: &ShapeSpec) -> Option<(Footprint, f64, f64)> {
+    match *shape {
+        ShapeSpec::Box { size: [x, y, z] } => Some((Footprint::Box { size_x: x, size_y: y }, z, x.min(y))),
+        ShapeSpec::Cylinder { radius, height } | ShapeSpec::Capsule { radius, height } => {
+            Some((Footprint::Disc { radius }, height, 2.0 * radius))
+        }
+        _ => None,
+    }
+}
+
+fn radians(degrees: &[f64]) -> Vec<f64> {
+    degrees.iter().map(|d| d.to_radians()).collect()
+}
+
+fn least(values: &[f64]) -> f64 {
+    values.iter().copied().reduce(f64::min).unwrap_or(0.0)
+}
+
+fn most(values: &[f64]) -> f64 {
+    values.iter().copied().reduce(f64::max).unwrap_or(0.0)
+}

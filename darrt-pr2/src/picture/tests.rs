@@ -1,0 +1,112 @@
+use super::*;
+use crate::arm::ArmConfiguration;
+use crate::problem_file::{PrimitiveName, builtin, builtin_names};
+
+/// Straight lines in joint space and between poses: `count` states from `from` to `to`.
+fn between(from: &Snapshot, to: &Snapshot, count: u32) -> Vec<Snapshot> {
+    let line = |a: f64, b: f64, s: f64| a + (b - a) * s;
+    let state = |i: u32| {
+        let s = f64::from(i) / f64::from(count - 1);
+        let mut state = from.clone();
+        for (value, (a, b)) in state.robot.base.iter_mut().zip(from.robot.base.iter().zip(to.robot.base)) {
+            *value = line(*a, b, s);
+        }
+        for (joint, (a, b)) in state.robot.arms[0].iter_mut().zip(from.robot.arms[0].iter().zip(to.robot.arms[0])) {
+            *joint = line(*a, b, s);
+        }
+        state.objects[0] = from.objects[0].lerp_slerp(&to.objects[0], s);
+        state
+    };
+    (0..count).map(state).collect()
+}
+
+/// A plan that pushes, takes, carries and places the plate of Plate1; it need not be possible.
+fn story() -> Story {
+    const ABOVE: ArmConfiguration = [0.287_708, 0.114_089, -1.0, -0.794_637, -2.071_325, -1.878_958, -0.601_32];
+    const CONTACT: ArmConfiguration = [0.240_989, 0.225_073, -1.17, -0.825_254, -2.010_273, -1.699_174, -0.579_167];
+    const PUSHED: ArmConfiguration = [-0.749_999, 0.024_19, -1.69, -1.218_877, -1.552_387, -1.450_569, -1.101_583];
+    let mut story = Story::of_problem(&builtin("plate1").unwrap()).unwrap();
+    let mut at = story.start.clone();
+    let mut steps = Vec::new();
+    let mut step = |primitive, change: &dyn Fn(&mut Snapshot)| {
+        let from = at.clone();
+        change(&mut at);
+        let object = (from.objects != at.objects).then_some(0);
+        steps.push(StoryStep { primitive, object, snapshots: between(&from, &at, 15) });
+    };
+    step(PrimitiveName::ArmTransit, &|s| s.robot.arms[0] = ABOVE);
+    step(PrimitiveName::StraightLineArmTransit, &|s| s.robot.arms[0] = CONTACT);
+    step(PrimitiveName::Push, &|s| {
+        s.robot.arms[0] = PUSHED;
+        s.objects[0].translation.y -= 0.58;
+    });
+    step(PrimitiveName::BaseTransit, &|s| s.robot.base = [-0.2, -1.3, 1.57]);
+    step(PrimitiveName::Pick, &|s| {
+        s.robot.arms[0] = [-0.5, 0.4, -1.0, -1.4, -1.5, -1.2, 0.4];
+        s.objects[0].translation.z += 0.12;
+    });
+    step(PrimitiveName::BaseRigidTransfer, &|s| {
+        s.robot.base = [-1.13, -1.16, -2.67];
+        s.objects[0].translation.vector += nalgebra::Vector3::new(-1.6, -0.4, 0.0);
+    });
+    step(PrimitiveName::Place, &|s| {
+        s.objects[0].translation.vector = nalgebra::Vector3::new(-2.165, -1.115, 1.01);
+    });
+    story.steps = steps;
+    story.note = "Seed 1.".to_owned();
+    story
+}
+
+#[test]
+fn every_embedded_problem_has_a_picture_in_both_formats() {
+    for name in builtin_names() {
+        let problem = builtin(name).unwrap();
+        let story = Story::of_problem(&problem).unwrap();
+        let image = draw(&story, Format::Svg);
+        assert!(image.starts_with("<?xml") && image.trim_end().ends_with("</svg>"), "{name}");
+        assert!(!image.contains("NaN") && !image.contains("inf"), "{name}");
+        let page = draw(&story, Format::Html);
+        assert!(page.starts_with("<!DOCTYPE html>") && page.contains("<svg class=\"page\""), "{name}");
+    }
+}
+
+#[test]
+fn pictures_need_nothing_from_elsewhere_and_are_the_same_twice() {
+    let story = story();
+    let page = draw(&story, Format::Html);
+    for foreign in ["href=", "src=", "url(", "<script", "@import"] {
+        assert!(!page.contains(foreign), "{foreign}");
+    }
+    assert_eq!(page, draw(&story, Format::Html));
+}
+
+#[test]
+fn every_step_has_a_number_a_name_and_a_distance() {
+    let story = story();
+    let image = draw(&story, Format::Svg);
+    for (number, step) in (1..).zip(&story.steps) {
+        assert!(image.contains(&format!("<title>step {number}: {}</title>", step.primitive)) || step.object.is_none());
+        assert!(image.contains(&format!(">{number}</text>")), "step {number}");
+    }
+    assert!(image.contains("object 0.58 m"));
+    assert!(image.contains("Seed 1."));
+}
+
+#[test]
+fn hostile_names_do_not_break_the_file() {
+    let mut story = story();
+    story.problem.title = "<script>&\u{1}\"".to_owned();
+    let page = draw(&story, Format::Html);
+    assert!(!page.contains("<script") && page.contains("&lt;script&gt;&amp; \""));
+    assert_eq!(page.matches("<svg ").count(), page.matches("</svg>").count());
+}
+
+#[test]
+fn the_format_follows_the_ending() {
+    let format = |path: &str| Format::of_path(Path::new(path));
+    assert_eq!(format("a/b.SVG").unwrap(), Format::Svg);
+    assert_eq!(format("b.htm").unwrap(), Format::Html);
+    for bad in ["b", "b.png", "svg"] {
+        assert!(format(bad).unwrap_err().to_string().contains(".svg or .html"), "{bad}");
+    }
+}

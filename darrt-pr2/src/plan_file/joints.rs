@@ -1,0 +1,183 @@
+//! Which joints a waypoint lists: every movable joint of the robot description, mimic joints included.
+//!
+//! A reader without our code then needs no knowledge of mimic joints; the price is that their values are redundant,
+//! which the verifier checks.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use darrt_primitives::kinematics::RobotDescription;
+use darrt_primitives::kinematics::tree::KinematicTree;
+use darrt_primitives::kinematics::urdf::JointKind;
+
+/// The movable joints of a robot by name, and how those that follow another are computed.
+#[derive(Debug, Clone)]
+pub struct JointTable {
+    entries: BTreeMap<Arc<str>, Entry>,
+    free: usize,
+}
+
+/// `value = multiplier * variable + offset`.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    variable: usize,
+    multiplier: f64,
+    offset: f64,
+    /// The joint is the variable itself, not one that follows it.
+    is_free: bool,
+}
+
+impl JointTable {
+    /// The joints of `robot`, whose tree is `tree`.
+    pub fn new(robot: &RobotDescription, tree: &KinematicTree) -> Self {
+        let movable = (0..).zip(&robot.joints).filter(|(_, joint)| joint.kind != JointKind::Fixed);
+        let entries = movable.filter_map(|(index, joint)| Some((joint.name.clone(), entry(robot, tree, index)?)));
+        Self { entries: entries.collect(), free: tree.variables().len() }
+    }
+
+    /// Every movable joint with its value, for the values of the tree's variables (rad or m, in the tree's order).
+    /// A missing variable counts as zero.
+    pub fn complete(&self, variables: &[f64]) -> BTreeMap<String, f64> {
+        let value = |entry: &Entry| entry.value(variables.get(entry.variable).copied().unwrap_or(0.0));
+        self.entries.iter().map(|(name, entry)| (name.to_string(), value(entry))).collect()
+    }
+
+    /// The values of the tree's variables from a list of all joints.
+    ///
+    /// # Errors
+    /// [`JointFlaw`] for a joint that is missing, unknown, not finite, or does not follow its driver to 1e-9.
+    pub fn variables(&self, joints: &BTreeMap<String, f64>) -> Result<Vec<f64>, JointFlaw> {
+        if let Some(name) = joints.keys().find(|name| !self.entries.contains_key(name.as_str())) {
+            return Err(JointFlaw::Unknown { name: name.clone() });
+        }
+        let mut variables = vec![0.0; self.free];
+        for (name, entry) in &self.entries {
+            let value = *joints.get(&**name).ok_or_else(|| JointFlaw::Missing { name: name.to_string() })?;
+            if !value.is_finite() {
+                return Err(JointFlaw::NotFinite { name: name.to_string(), value });
+            }
+            if entry.is_free
+                && let Some(slot) = variables.get_mut(entry.variable)
+            {
+                *slot = value;
+            }
+        }
+        for (name, entry) in self.entries.iter().filter(|(_, entry)| !entry.is_free) {
+            let expected = entry.value(variables.get(entry.variable).copied().unwrap_or(0.0));
+            let found = joints.get(&**name).copied().unwrap_or(f64::NAN);
+            let off = (found - expected).abs();
+            if off.is_nan() || off > 1e-9 {
+                return Err(JointFlaw::NotFollowing { name: name.to_string(), found, expected });
+            }
+        }
+        Ok(variables)
+    }
+}
+
+impl Entry {
+    fn value(&self, variable: f64) -> f64 {
+        self.multiplier * variable + self.offset
+    }
+}
+
+/// Follows the joint with this index to its variable; `None` for a description that is not the tree's.
+fn entry(robot: &RobotDescription, tree: &KinematicTree, joint: usize) -> Option<Entry> {
+    let (mut at, mut multiplier, mut offset) = (robot.joints.get(joint)?, 1.0, 0.0);
+    for _ in 0..=robot.joints.len() {
+        let Some(mimic) = at.mimic else {
+            let variable = tree.variable_index(&at.name)?;
+            let is_free = at.name == robot.joints.get(joint)?.name;
+            return Some(Entry { variable, multiplier, offset, is_free });
+        };
+        offset += multiplier * mimic.offset;
+        multiplier *= mimic.multiplier;
+        at = robot.joints.get(mimic.joint)?;
+    }
+    None
+}
+
+/// A list of joints that does not fit the robot.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum JointFlaw {
+    /// The robot has no such movable joint.
+    #[error("there is no movable joint `{name}`")]
+    Unknown {
+        /// The name.
+        name: String,
+    },
+    /// A joint is not listed.
+    #[error("the joint `{name}` is missing")]
+    Missing {
+        /// The name.
+        name: String,
+    },
+    /// A joint's value is no number.
+    #[error("the joint `{name}` is {value}, it must be a finite number")]
+    NotFinite {
+        /// The name.
+        name: String,
+        /// The value.
+        value: f64,
+    },
+    /// A mimic joint is not where its driver puts it.
+    #[error("the joint `{name}` is {found}, but the joint that it mimics puts it at {expected}")]
+    NotFollowing {
+        /// The name.
+        name: String,
+        /// The value found.
+        found: f64,
+        /// The value that follows from the driver.
+        expected: f64,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::URDF;
+
+    fn table() -> (JointTable, KinematicTree) {
+        let robot = RobotDescription::from_text(URDF).unwrap();
+        let tree = KinematicTree::new(&robot).unwrap();
+        (JointTable::new(&robot, &tree), tree)
+    }
+
+    #[test]
+    fn every_movable_joint_is_listed_and_read_back() {
+        let (table, tree) = table();
+        let variables: Vec<f64> = (1_u8..).map(f64::from).take(tree.variables().len()).collect();
+        let joints = table.complete(&variables);
+        // Torso, head pan and tilt, scanner, two arms of seven, two grippers of four.
+        assert_eq!(joints.len(), 4 + 14 + 8);
+        assert_eq!(joints["r_gripper_l_finger_joint"], joints["r_gripper_r_finger_tip_joint"]);
+        assert_eq!(table.variables(&joints).unwrap(), variables);
+    }
+
+    #[test]
+    fn wrong_lists_are_refused_by_name() {
+        let (table, tree) = table();
+        let good = table.complete(&tree.neutral());
+        let message = |edit: &dyn Fn(&mut BTreeMap<String, f64>)| {
+            let mut joints = good.clone();
+            edit(&mut joints);
+            table.variables(&joints).unwrap_err().to_string()
+        };
+        let missing = message(&|joints| {
+            joints.remove("torso_lift_joint");
+        });
+        assert!(missing.contains("`torso_lift_joint` is missing"), "{missing}");
+        let unknown = message(&|joints| {
+            joints.insert("tail_joint".to_owned(), 0.0);
+        });
+        assert!(unknown.contains("no movable joint `tail_joint`"), "{unknown}");
+        let nan = message(&|joints| {
+            joints.insert("l_elbow_flex_joint".to_owned(), f64::NAN);
+        });
+        assert!(nan.contains("NaN"), "{nan}");
+        let apart = message(&|joints| {
+            joints.insert("l_gripper_r_finger_joint".to_owned(), 0.1);
+        });
+        assert!(apart.contains("`l_gripper_r_finger_joint` is 0.1") && apart.contains("at 0"), "{apart}");
+    }
+}

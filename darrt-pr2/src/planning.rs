@@ -1,0 +1,248 @@
+//! Planning a problem file from end to end: build, search, verify, export.
+
+use std::time::Duration;
+
+use darrt_core::budget::{Budget, Cancel, Stop};
+use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
+use darrt_core::extend::ExtendOptions;
+use darrt_core::goal::Goal;
+use darrt_core::observe::Observer;
+use darrt_core::observe::accounts::Accounts;
+use darrt_core::plan::Plan;
+use darrt_core::problem::{Parts, Problem};
+use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler};
+use darrt_core::search::Strategy;
+use darrt_core::solve::{Outcome, SolveOptions, solve};
+use darrt_core::verify::{Refusal, Verifier};
+use darrt_primitives::validity::{SceneValidity, ValidityOptions};
+
+use crate::export::Exporter;
+use crate::plan_file::{PlanFile, PlannerFacts};
+use crate::planning_error::PlanningError;
+use crate::problem_file::{DistanceName, PrimitiveName, ProblemFile, SamplerName, Sampling};
+use crate::world::{self, Built, World, WorldState};
+
+/// What to plan and how; `None` keeps what the problem file says.
+#[derive(Debug, Clone)]
+pub struct PlanRequest {
+    /// The problem.
+    pub problem: ProblemFile,
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Attempts that run at the same time.
+    pub threads: usize,
+    /// Wall-clock limit.
+    pub time_limit: Option<Duration>,
+    /// Most iterations over all attempts.
+    pub iterations: Option<u64>,
+    /// Iterations after which an attempt is given up for a new one.
+    pub restart: Option<u64>,
+    /// Which components a sample names.
+    pub sampler: Option<SamplerName>,
+    /// Which distance picks the node.
+    pub distance: Option<DistanceName>,
+}
+
+impl PlanRequest {
+    /// The problem as its file says, on one thread.
+    pub fn new(problem: ProblemFile, seed: u64) -> Self {
+        Self {
+            problem,
+            seed,
+            threads: 1,
+            time_limit: None,
+            iterations: None,
+            restart: None,
+            sampler: None,
+            distance: None,
+        }
+    }
+}
+
+/// How planning ended.
+#[derive(Debug)]
+pub struct PlanResult {
+    /// The verified plan, if one was found.
+    pub plan: Option<PlanFile>,
+    /// Why it stopped.
+    pub stop: Stop,
+    /// Counts per primitive.
+    pub accounts: Accounts,
+    /// Iterations over all attempts.
+    pub iterations: u64,
+    /// Nodes of the largest tree.
+    pub nodes: usize,
+    /// Attempts begun anew.
+    pub restarts: u64,
+    /// Metres from the goal to the nearest state found.
+    pub nearest_to_goal: f64,
+    /// Time used.
+    pub elapsed: Duration,
+    /// The last refusal of the verifier.
+    pub last_refusal: Option<String>,
+}
+
+/// The judge: a plan is exported and the plan file is verified, so that what is accepted is what the user gets.
+#[derive(Debug)]
+struct FileVerifier {
+    exporter: Exporter,
+}
+
+impl Verifier<World> for FileVerifier {
+    fn verify(
+        &self,
+        m: &World,
+        _: &WorldState,
+        _: &dyn Goal<World>,
+        plan: &Plan<World>,
+    ) -> Result<(), Refusal> {
+        let nobody = PlannerFacts {
+            sampler: SamplerName::default(),
+            distance: DistanceName::default(),
+            iterations: 0,
+            restarts: 0,
+            nodes: 0,
+        };
+        let file = self.exporter.export(m, plan, 0, nobody);
+        match crate::verify::verify(&file) {
+            Ok(_) => Ok(()),
+            Err(refusal) => Err(Refusal { step: None, at: 0.0, reason: refusal.to_string() }),
+        }
+    }
+}
+
+/// A problem ready to be solved.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The planner's problem.
+    pub problem: Problem<World>,
+    exporter: Exporter,
+}
+
+/// Builds and checks everything about a problem before the search.
+///
+/// # Errors
+/// [`PlanningError`] with what cannot be used: a start outside limits or in collision, a blocked goal, a missing
+/// primitive, a robot or shape that cannot be built.
+pub fn prepare(file: &ProblemFile) -> Result<Prepared, PlanningError> {
+    check_companions(file)?;
+    let Built { world, start, goal, scene } = world::build(file)?;
+    let validity = SceneValidity::new(&world, scene.bodies(), ValidityOptions::default())?;
+    crate::goal_check::check_goal(&world, &goal, &scene)?;
+    let exporter = Exporter::new(file, &world)?;
+    let verifier = FileVerifier { exporter: Exporter::new(file, &world)? };
+    let problem = Problem::new(Parts {
+        domain: world,
+        start,
+        goal: Box::new(goal),
+        primitives: world::primitives(file),
+        validity: Box::new(validity),
+        verifier: Box::new(verifier),
+    })?;
+    Ok(Prepared { problem, exporter })
+}
+
+/// Plans. Stopping without a plan is a result, not an error.
+///
+/// # Errors
+/// [`PlanningError`] when the problem cannot be planned at all; see [`prepare`].
+pub fn plan(
+    request: &PlanRequest,
+    cancel: &Cancel,
+    observer: &mut dyn Observer,
+) -> Result<PlanResult, PlanningError> {
+    let prepared = prepare(&request.problem)?;
+    let (sampler, distance) = chosen(request);
+    let strategy = strategy(&request.problem.sampling, sampler, distance)?;
+    let budget = &request.problem.budget;
+    let seconds = Duration::try_from_secs_f64(budget.time_limit_s).ok();
+    let options = SolveOptions {
+        seed: request.seed,
+        budget: Budget {
+            time: request.time_limit.or(seconds),
+            iterations: request.iterations.or(budget.iterations),
+            nodes: budget.nodes.and_then(|n| usize::try_from(n).ok()),
+            cancel: cancel.clone(),
+        },
+        restart_iterations: request.restart.or(budget.restart_iterations),
+        threads: request.threads,
+    };
+    let outcome = solve(&prepared.problem, &strategy, &options, observer);
+    Ok(result(&prepared, request, (sampler, distance), outcome))
+}
+
+fn result(
+    prepared: &Prepared,
+    request: &PlanRequest,
+    (sampler, distance): (SamplerName, DistanceName),
+    outcome: Outcome<World>,
+) -> PlanResult {
+    let nodes = outcome.nodes as u64;
+    let facts =
+        PlannerFacts { sampler, distance, iterations: outcome.iterations, restarts: outcome.restarts, nodes };
+    let m = prepared.problem.domain();
+    let plan = outcome.solution.map(|s| prepared.exporter.export(m, s.plan(), request.seed, facts));
+    PlanResult {
+        plan,
+        stop: outcome.stop,
+        accounts: outcome.accounts,
+        iterations: outcome.iterations,
+        nodes: outcome.nodes,
+        restarts: outcome.restarts,
+        nearest_to_goal: outcome.nearest_to_goal,
+        elapsed: outcome.elapsed,
+        last_refusal: outcome.last_refusal,
+    }
+}
+
+fn chosen(request: &PlanRequest) -> (SamplerName, DistanceName) {
+    let sampling = &request.problem.sampling;
+    (request.sampler.unwrap_or(sampling.sampler), request.distance.unwrap_or(sampling.distance))
+}
+
+/// SAMPLE and DISTANCE as named.
+///
+/// # Errors
+/// [`PlanningError`] for a share outside its range.
+pub fn strategy(
+    sampling: &Sampling,
+    sampler: SamplerName,
+    distance: DistanceName,
+) -> Result<Strategy<World>, PlanningError> {
+    let sampler: Box<dyn Sampler<World>> = match sampler {
+        SamplerName::RobotOrObjects => {
+            Box::new(RobotOrObjects::new(sampling.object_share, sampling.base_only_share)?)
+        }
+        SamplerName::RandomSubset => Box::new(RandomSubset),
+        SamplerName::Full => Box::new(Full),
+    };
+    let distance: Box<dyn Distance<World>> = match distance {
+        DistanceName::Greedy => Box::new(GreedyVisit),
+        DistanceName::Euclidean => Box::new(Euclidean),
+        DistanceName::ExactTour => Box::new(ExactTour),
+    };
+    let sampler = Box::new(GoalBiased::new(sampler, sampling.goal_bias)?);
+    Ok(Strategy { sampler, distance, extend: ExtendOptions::default() })
+}
+
+/// Every manipulation is made of simpler primitives, which must be allowed too.
+fn check_companions(file: &ProblemFile) -> Result<(), PlanningError> {
+    use PrimitiveName::{ArmRigidTransfer, ArmTransit, Pick, Place, Push, StraightLineArmTransit};
+    let needs = [
+        (Push, ArmTransit),
+        (Push, StraightLineArmTransit),
+        (Pick, ArmTransit),
+        (Pick, StraightLineArmTransit),
+        (Place, ArmRigidTransfer),
+        (Place, StraightLineArmTransit),
+    ];
+    for (primitive, companion) in needs {
+        if file.allows(primitive) && !file.allows(companion) {
+            return Err(PlanningError::MissingPrimitive {
+                primitive: primitive.as_str().to_owned(),
+                needs: companion.as_str().to_owned(),
+            });
+        }
+    }
+    Ok(())
+}

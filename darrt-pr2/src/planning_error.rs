@@ -1,0 +1,73 @@
+//! What can keep a problem from being planned at all.
+
+use darrt_geom::GeomError;
+use darrt_primitives::error::PrimitiveError;
+
+use crate::model::ModelError;
+use crate::plan_file::PlanFileError;
+use crate::problem_file::ProblemFileError;
+
+/// A problem that cannot be planned, or a plan that cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanningError {
+    /// The problem file.
+    #[error(transparent)]
+    Problem(#[from] ProblemFileError),
+    /// The robot's description.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A shape or pose.
+    #[error(transparent)]
+    Geometry(#[from] GeomError),
+    /// A number, the start or the goal, as the planner sees it.
+    #[error(transparent)]
+    Core(#[from] darrt_core::error::Error),
+    /// The plan file.
+    #[error(transparent)]
+    PlanFile(#[from] PlanFileError),
+    /// A family of grasps does not fit its object.
+    #[error("object `{object}`: its grasps cannot be used: {source}")]
+    Grasp {
+        /// The object.
+        object: String,
+        /// Why.
+        source: PrimitiveError,
+    },
+    /// An arm's start has the wrong number of joints.
+    #[error("{key}: the arm's start has {found} joints, it must have 7")]
+    JointCount {
+        /// The key.
+        key: &'static str,
+        /// How many there are.
+        found: usize,
+    },
+    /// A posture that the robot does not have.
+    #[error("there is no posture `{name}`")]
+    UnknownPosture {
+        /// The name.
+        name: String,
+    },
+    /// A goal for an object that is not there.
+    #[error("the goal names the object `{name}`, which the problem does not have")]
+    UnknownObject {
+        /// The name.
+        name: String,
+    },
+    /// The object cannot be at its goal: something fixed is in the way there.
+    #[error("the goal of `{object}` is blocked: {blame}")]
+    GoalBlocked {
+        /// The object.
+        object: String,
+        /// What is in the way, and where.
+        blame: String,
+    },
+    /// A primitive needs another one that the problem leaves out.
+    #[error("`{primitive}` is allowed but not `{needs}`, which it is made of")]
+    MissingPrimitive {
+        /// The primitive that is allowed.
+        primitive: String,
+        /// What it needs.
+        needs: String,
+    },
+}

@@ -1,0 +1,73 @@
+//! Rules of the goals.
+
+use std::f64::consts::PI;
+
+use super::names::{object, surface};
+use super::numbers::{length, ordered, within};
+use super::world::in_bounds;
+use crate::problem_file::error::{Flaw, Located};
+use crate::problem_file::{GoalState, GoalTarget, ObjectGoal, ProblemFile};
+
+/// Most goals.
+const MOST_GOALS: usize = 1000;
+
+/// Tightest and loosest tolerance of a position (m).
+const TOLERANCE_RANGE: [f64; 2] = [1e-6, 1.0];
+
+/// Checks all goals.
+pub(super) fn check(problem: &ProblemFile) -> Result<(), Located> {
+    length("goal.object", problem.goal.objects.len(), 1, MOST_GOALS)?;
+    for (index, goal) in problem.goal.objects.iter().enumerate() {
+        check_goal(problem, goal, &format!("goal.object[{index}]"))?;
+    }
+    Ok(())
+}
+
+fn check_goal(problem: &ProblemFile, goal: &ObjectGoal, key: &str) -> Result<(), Located> {
+    object(problem, &format!("{key}.object"), &goal.object)?;
+    let [least, most] = TOLERANCE_RANGE;
+    within(&format!("{key}.tolerance_m"), goal.tolerance_m, least, most)?;
+    within(&format!("{key}.yaw_tolerance"), goal.yaw_tolerance, least, PI)?;
+    if let Some(name) = &goal.on {
+        surface(problem, &format!("{key}.on"), name)?;
+        check_allowed(problem, goal, name, key)?;
+    }
+    let Some(target) = goal.target() else {
+        let text = "must have either `on` with `at`, or `on` with `region`, or `position` alone";
+        return Err(Flaw::Inconsistent(text.to_owned()).at(key));
+    };
+    match target {
+        GoalTarget::On { .. } => Ok(()),
+        GoalTarget::Within { region, .. } => {
+            for (axis, letter) in ["x", "y"].into_iter().enumerate() {
+                let range = [region.min[axis], region.max[axis]];
+                ordered(&format!("{key}.region, {letter} from min to max,"), range)?;
+            }
+            Ok(())
+        }
+        GoalTarget::At { position } => {
+            let ranges = problem.bounds.ranges();
+            for (axis, (value, (name, range))) in position.into_iter().zip(ranges.into_iter().skip(2)).enumerate() {
+                in_bounds(&format!("{key}.position[{axis}]"), value, name, range)?;
+            }
+            if goal.state() == GoalState::Released {
+                let text = "is `released`, but a goal with `position` is off every surface";
+                return Err(Flaw::Inconsistent(text.to_owned()).at(format!("{key}.state")));
+            }
+            Ok(())
+        }
+    }
+}
+
+/// The goal's surface is one on which its object may stand.
+fn check_allowed(problem: &ProblemFile, goal: &ObjectGoal, name: &str, key: &str) -> Result<(), Located> {
+    let Some(object) = problem.object(&goal.object) else {
+        return Ok(());
+    };
+    let allowed = problem.allowed_surfaces(object);
+    if allowed.contains(&name) {
+        return Ok(());
+    }
+    let text = format!("is `{name}`, but `{}` may only stand on: {}", object.name, allowed.join(", "));
+    Err(Flaw::Inconsistent(text).at(format!("{key}.on")))
+}

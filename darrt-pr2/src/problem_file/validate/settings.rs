@@ -1,0 +1,83 @@
+//! Rules of the primitives' and the planner's settings.
+
+use super::names::posture;
+use super::numbers::{length, ordered, positive, within};
+use super::objects::{LONGEST_MOTION, WIDEST_GAP};
+use crate::problem_file::error::{Flaw, Located};
+use crate::problem_file::{Place, PrimitiveName, ProblemFile, Push, Sampling};
+
+/// Most directions from which Place may approach, and most postures.
+const MOST_ENTRIES: usize = 64;
+
+/// Checks primitives, push, place, sampling, transit and budget.
+pub(super) fn check(problem: &ProblemFile) -> Result<(), Located> {
+    check_primitives(&problem.primitives)?;
+    check_push(&problem.push)?;
+    check_place(&problem.place)?;
+    check_sampling(&problem.sampling)?;
+    length("transit.postures", problem.transit.postures.len(), 0, MOST_ENTRIES)?;
+    for (index, name) in problem.transit.postures.iter().enumerate() {
+        posture(&format!("transit.postures[{index}]"), name)?;
+    }
+    let budget = &problem.budget;
+    positive("budget.time_limit_s", budget.time_limit_s)?;
+    let counts =
+        [("iterations", budget.iterations), ("nodes", budget.nodes), ("restart_iterations", budget.restart_iterations)];
+    for (name, count) in counts {
+        if count == Some(0) {
+            positive(&format!("budget.{name}"), 0.0)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_primitives(names: &[PrimitiveName]) -> Result<(), Located> {
+    length("primitives", names.len(), 1, PrimitiveName::ALL.len())?;
+    for (index, name) in names.iter().enumerate() {
+        if let Some(first) = names.iter().take(index).position(|earlier| earlier == name) {
+            let (name, taken_by) = (name.to_string(), format!("primitives[{first}]"));
+            return Err(Flaw::Duplicate { name, taken_by }.at(format!("primitives[{index}]")));
+        }
+    }
+    Ok(())
+}
+
+fn check_push(push: &Push) -> Result<(), Located> {
+    positive("push.gap_m", push.gap_m)?;
+    within("push.gap_m", push.gap_m, 0.0, WIDEST_GAP)?;
+    let lengths = [
+        ("fingertip_clearance_m", push.fingertip_clearance_m),
+        ("standoff_m", push.standoff_m),
+        ("approach_m", push.approach_m),
+        ("retreat_m", push.retreat_m),
+        ("edge_distance_m[0]", push.edge_distance_m[0]),
+        ("edge_distance_m[1]", push.edge_distance_m[1]),
+    ];
+    for (name, value) in lengths {
+        within(&format!("push.{name}"), value, 0.0, LONGEST_MOTION)?;
+    }
+    ordered("push.edge_distance_m", push.edge_distance_m)
+}
+
+fn check_place(place: &Place) -> Result<(), Located> {
+    let directions = &place.approach_directions;
+    length("place.approach_directions", directions.len(), 1, MOST_ENTRIES)?;
+    for (index, direction) in directions.iter().enumerate() {
+        let key = format!("place.approach_directions[{index}][2]");
+        if direction[2] > -1e-6 {
+            let bound = "negative, the hand comes from above".to_owned();
+            return Err(Flaw::OutOfRange { value: direction[2], bound }.at(key));
+        }
+    }
+    within("place.approach_m", place.approach_m, 0.0, LONGEST_MOTION)?;
+    within("place.retreat_m", place.retreat_m, 0.0, LONGEST_MOTION)
+}
+
+fn check_sampling(sampling: &Sampling) -> Result<(), Located> {
+    let shares = [
+        ("object_share", sampling.object_share),
+        ("goal_bias", sampling.goal_bias),
+        ("base_only_share", sampling.base_only_share),
+    ];
+    shares.into_iter().try_for_each(|(name, share)| within(&format!("sampling.{name}"), share, 0.0, 1.0))
+}

@@ -1,0 +1,149 @@
+use super::*;
+use crate::arm::{ArmConfiguration, LimitKind};
+use crate::model::WholeBody;
+use crate::postures::ArmPosture;
+use darrt_geom::{Body, Shape};
+use nalgebra::{Isometry3, Matrix3, Vector3};
+use rand::{RngExt, SeedableRng};
+use std::f64::consts::PI;
+
+/// An oriented box in the world.
+struct Placed {
+    centre: Vector3<f64>,
+    axes: Matrix3<f64>,
+    half: Vector3<f64>,
+}
+
+fn boxes(body: &Body, world_from_link: &Isometry3<f64>) -> Vec<Placed> {
+    let place = |part: &darrt_geom::Part| {
+        let Shape::Cuboid { half_extents, .. } = &part.shape else {
+            panic!("{}: not a box", body.name);
+        };
+        let pose = world_from_link * part.body_from_shape;
+        Placed {
+            centre: pose.translation.vector,
+            axes: pose.rotation.to_rotation_matrix().into_inner(),
+            half: *half_extents,
+        }
+    };
+    body.parts.iter().map(place).collect()
+}
+
+/// Separating axis test, all fifteen axes: deliberately plain.
+fn overlap(a: &Placed, b: &Placed) -> bool {
+    let mut axes: Vec<Vector3<f64>> = Vec::new();
+    for i in 0..3 {
+        axes.push(a.axes.column(i).into());
+        axes.push(b.axes.column(i).into());
+        for j in 0..3 {
+            axes.push(a.axes.column(i).cross(&b.axes.column(j)));
+        }
+    }
+    let radius = |p: &Placed, axis: &Vector3<f64>| (p.axes.transpose() * axis).abs().dot(&p.half);
+    axes.iter()
+        .filter(|axis| axis.norm() > 1e-9)
+        .all(|axis| (b.centre - a.centre).dot(axis).abs() <= radius(a, axis) + radius(b, axis))
+}
+
+/// Names of the pairs that touch.
+fn touching(model: &Pr2Model, state: &WholeBody, active: Side) -> Vec<String> {
+    let poses = model.link_poses(state);
+    let name = |link: usize| model.tree().link_names()[link].to_string();
+    let meets = |[a, b]: &[usize; 2]| {
+        let first = boxes(model.body(*a).unwrap(), &poses[*a]);
+        let second = boxes(model.body(*b).unwrap(), &poses[*b]);
+        first.iter().any(|p| second.iter().any(|q| overlap(p, q)))
+    };
+    link_pairs(model, active)
+        .iter()
+        .filter(|pair| meets(pair))
+        .map(|[a, b]| format!("{} - {}", name(*a), name(*b)))
+        .collect()
+}
+
+fn state(active: Side, q: ArmConfiguration) -> WholeBody {
+    let mut state = WholeBody::at_rest();
+    state.arms[active.index()] = q;
+    state
+}
+
+#[test]
+fn worked_examples_are_clear() {
+    let model = Pr2Model::embedded().unwrap();
+    let file: serde_json::Value =
+        serde_json::from_str(include_str!("../../tests/data/witness_configurations.json")).unwrap();
+    let witnesses = file["witnesses"].as_array().unwrap();
+    assert_eq!(witnesses.len(), 19);
+    let mut checked = 0;
+    for witness in witnesses {
+        for q in witness["configurations"].as_array().unwrap() {
+            let q: Vec<f64> = q.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+            let found = touching(&model, &state(Side::Right, q.try_into().unwrap()), Side::Right);
+            assert!(found.is_empty(), "{} {}: {found:?}", witness["domain"], witness["action"]);
+            checked += 1;
+        }
+    }
+    assert_eq!(checked, 50);
+}
+
+#[test]
+fn postures_are_clear_on_both_sides() {
+    let model = Pr2Model::embedded().unwrap();
+    for side in Side::BOTH {
+        for posture in ArmPosture::ALL {
+            let found = touching(&model, &state(side, posture.values(side)), side);
+            // The left tucked arm lies across the body: its boxes reach into those of the right shoulder.
+            let across = (side, posture) == (Side::Left, ArmPosture::Tucked);
+            assert!(found.iter().all(|p| across && p.ends_with(" - r_shoulder_pan_link")), "{posture:?}: {found:?}");
+            assert_eq!(found.is_empty(), !across, "{side:?} {posture:?}");
+        }
+    }
+}
+
+#[test]
+fn folded_arms_are_reported() {
+    let model = Pr2Model::embedded().unwrap();
+    let folded = [0.5, 0.6, -1.57, -2.12, 0.0, -2.0, 0.0];
+    let found = touching(&model, &state(Side::Right, folded), Side::Right);
+    for pair in ["r_forearm_link - l_shoulder_pan_link", "r_gripper_l_finger_tip_link - r_shoulder_pan_link"] {
+        assert!(found.iter().any(|p| p == pair), "{found:?}");
+    }
+    let mirror = touching(&model, &state(Side::Left, crate::postures::mirrored(&folded)), Side::Left);
+    assert!(mirror.iter().any(|p| p == "l_forearm_link - r_shoulder_pan_link"), "{mirror:?}");
+}
+
+/// Measured on another implementation of the same boxes: forearm against own shoulder in 2 to 4 % of configurations.
+#[test]
+fn the_forearm_meets_its_shoulder_as_often_as_measured() {
+    let model = Pr2Model::embedded().unwrap();
+    let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(1);
+    let limits = model.limits(Side::Right, LimitKind::Soft);
+    let meets = |_: &u32| {
+        let q = limits.map(|l| rng.random_range(l.lower.max(-PI)..l.upper.min(PI)));
+        let found = touching(&model, &state(Side::Right, q), Side::Right);
+        found.iter().any(|p| p == "r_forearm_link - r_shoulder_pan_link")
+    };
+    let count = (0..1000).filter(meets).count();
+    assert!((15..=45).contains(&count), "{count} of 1000");
+}
+
+#[test]
+fn rules_are_mirror_images() {
+    let swap = |name: &str| match name.split_at(2) {
+        ("r_", rest) => format!("l_{rest}"),
+        ("l_", rest) => format!("r_{rest}"),
+        _ => name.to_owned(),
+    };
+    let mirrored: Vec<LinkPair> =
+        pairs(Side::Right).iter().map(|p| LinkPair { moving: swap(&p.moving), other: swap(&p.other) }).collect();
+    assert_eq!(mirrored, pairs(Side::Left));
+    let has = |moving: &str, other: &str| {
+        pairs(Side::Right).contains(&LinkPair { moving: moving.to_owned(), other: other.to_owned() })
+    };
+    assert!(has("r_elbow_flex_link", "base_link") && !has("r_elbow_flex_link", "torso_lift_link"));
+    assert!(has("r_gripper_palm_link", "head_tilt_link") && !has("r_forearm_link", "head_tilt_link"));
+    assert!(has("r_forearm_link", "laser_tilt_mount_link") && !has("r_wrist_roll_link", "laser_tilt_mount_link"));
+    assert!(has("r_forearm_link", "r_shoulder_pan_link") && !has("r_elbow_flex_link", "r_shoulder_pan_link"));
+    assert!(has("r_upper_arm_link", "l_upper_arm_link") && !has("r_elbow_flex_link", "l_shoulder_pan_link"));
+    assert!(!has("r_upper_arm_link", "torso_lift_link"));
+}

@@ -1,0 +1,70 @@
+//! The verifier: judges a plan file by replaying it, without the planner and without the primitives.
+//!
+//! It shares with the planner the robot description, the general kinematic tree, the shapes of the problem and the table
+//! of self-collision pairs; poses, collisions, contacts and the rules of the primitives it works out by itself. Every
+//! checked state is one at a finer resolution than the planner's waypoints, with exact shapes.
+//!
+//! | question | file |
+//! |---|---|
+//! | in which order is what checked? | `judge` |
+//! | what may a step do, what may it touch? | `mode` |
+//! | what lies between two waypoints? | `motion` |
+//! | which solids may not touch, do they? | `stage`, `solid` |
+//! | is an object gripped, or pushed as pushes go? | `hand` |
+//! | does the plan start and end where it must? | `start`, `goal` |
+//!
+//! `docs/plan-format.md` states the rules for readers of plans.
+
+mod goal;
+mod hand;
+mod judge;
+mod mode;
+mod motion;
+mod options;
+mod refusal;
+mod robot;
+mod solid;
+mod stage;
+mod start;
+mod world;
+
+pub use options::VerifyOptions;
+pub use refusal::{Refusal, RefusalKind};
+pub use stage::SmallestClearance;
+
+use crate::plan_file::PlanFile;
+
+/// What was checked on the way to "yes".
+#[derive(Debug, Clone, PartialEq)]
+pub struct Proof {
+    /// Steps of the plan.
+    pub steps: usize,
+    /// Waypoints of all steps.
+    pub waypoints: usize,
+    /// States checked for collisions.
+    pub states: u64,
+    /// Pairs of solids that were near enough to need the exact test.
+    pub exact_tests: u64,
+    /// The smallest distance seen between two bodies that may not touch; `None` if none came near.
+    pub smallest_clearance: Option<SmallestClearance>,
+}
+
+/// Replays `plan` with the default [`VerifyOptions`].
+///
+/// # Errors
+/// The first [`Refusal`] found, in the order of time.
+pub fn verify(plan: &PlanFile) -> Result<Proof, Refusal> {
+    verify_with(plan, &VerifyOptions::default())
+}
+
+/// Replays `plan` at the resolution and with the tolerances of `options`.
+///
+/// # Errors
+/// The first [`Refusal`] found, in the order of time; also when an option is out of its range.
+pub fn verify_with(plan: &PlanFile, options: &VerifyOptions) -> Result<Proof, Refusal> {
+    if let Some((name, value)) = options.flaw() {
+        let text = format!("the verifier's option `{name}` is {value}, which is out of its range");
+        return Err(Refusal::whole(RefusalKind::Malformed, text));
+    }
+    judge::Judge::new(plan, options)?.run()
+}

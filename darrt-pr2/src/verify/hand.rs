@@ -1,0 +1,170 @@
+//! What the fingers do to objects: gripping one, pushing one.
+
+use std::sync::Arc;
+
+use darrt_geom::{Body, Shape, clearance};
+use nalgebra::{Isometry3, Point2, Vector2, Vector3};
+
+use super::options::VerifyOptions;
+use super::refusal::{Refusal, RefusalKind, Site};
+use super::robot::Robot;
+use super::solid::{Solid, exact};
+use super::stage::Stage;
+use crate::problem_file::{Object, ShapeSpec};
+
+/// Half the thickness of the sheet between the fingers that must meet a held object, metres.
+const SHEET_M: f64 = 5e-4;
+
+/// The object is in the hand: near both fingertips, and between them.
+pub(super) fn check_grip(
+    site: Site,
+    time: f64,
+    robot: &Robot,
+    stage: &Stage,
+    object: usize,
+    options: &VerifyOptions,
+) -> Result<(), Refusal> {
+    let (solid, pose) = stage.object(object);
+    let refuse = |message: String| site.refusal(time, RefusalKind::Grasp, message);
+    let [_, _, left, right] = robot.fingers;
+    let mut middles = Vec::new();
+    for tip in [left, right] {
+        let mut distance = f64::INFINITY;
+        let mut name = "";
+        for index in robot.solids_of(tip) {
+            let (tip_solid, tip_pose) = stage.link_solid(index);
+            name = tip_solid.name();
+            let found = exact(tip_solid, tip_pose, solid, pose).map_err(|e| refuse(e.to_string()))?;
+            distance = distance.min(found.distance);
+        }
+        if distance > options.grip_m {
+            let text =
+                format!("{name} is {distance:.4} m from {}, at most {} m holds it", solid.name(), options.grip_m);
+            return Err(refuse(text).about(name, solid.name()));
+        }
+        middles.extend(robot.solids_of(tip).next().map(|index| stage.link_solid(index)));
+    }
+    let [(tip, left_pose), (_, right_pose)] = middles[..] else { return Ok(()) };
+    let Some(shape) = tip.shape() else { return Ok(()) };
+    let (low, high) = shape.local_aabb();
+    let half = (high - low) / 2.0;
+    let sheet = Shape::cuboid(Vector3::new(half.x, SHEET_M, half.z))
+        .and_then(|shape| Solid::new(&Arc::from("the space between the fingers"), shape))
+        .map_err(|e| refuse(e.to_string()))?;
+    let middle = left_pose.translation.vector.lerp(&right_pose.translation.vector, 0.5);
+    let sheet_pose = Isometry3::from_parts(middle.into(), left_pose.rotation);
+    let found = exact(&sheet, &sheet_pose, solid, pose).map_err(|e| refuse(e.to_string()))?;
+    if found.intersects {
+        return Ok(());
+    }
+    Err(refuse(format!("{} is not between the fingers", solid.name())))
+}
+
+/// A pushed object without its outermost skin: what a pushing finger must not reach.
+#[derive(Debug)]
+pub(super) struct PushCore {
+    core: Body,
+    name: String,
+}
+
+impl PushCore {
+    /// The core of `object`, or why it cannot be pushed.
+    pub(super) fn new(object: &Object, skin_m: f64) -> Result<Self, String> {
+        let name = object.name.clone();
+        if !object.pushable() {
+            return Err(format!("`{name}` may not be pushed"));
+        }
+        let core = match object.shape {
+            ShapeSpec::Cylinder { radius, height } | ShapeSpec::Bowl { radius, height, .. } => {
+                Shape::cylinder(radius - skin_m, height / 2.0)
+            }
+            ShapeSpec::Sphere { radius } => Shape::sphere(radius - skin_m),
+            ShapeSpec::Capsule { radius, height } => Shape::capsule(radius - skin_m, height / 2.0 - radius),
+            _ => return Err(format!("`{name}` is not round and cannot be pushed")),
+        };
+        let body = core.and_then(|shape| Body::single(name.as_str(), shape)).map_err(|error| error.to_string())?;
+        Ok(Self { core: body, name })
+    }
+
+    /// No finger reaches deeper into the object than its skin.
+    pub(super) fn check_depth(
+        &self,
+        site: Site,
+        time: f64,
+        robot: &Robot,
+        stage: &Stage,
+        object: usize,
+    ) -> Result<(), Refusal> {
+        let (_, pose) = stage.object(object);
+        for index in robot.fingers.into_iter().flat_map(|link| robot.solids_of(link)) {
+            let (solid, solid_pose) = stage.link_solid(index);
+            let refuse = |text: String| site.refusal(time, RefusalKind::Push, text).about(solid.name(), &self.name);
+            let found = clearance::between(&solid.body, solid_pose, &self.core, pose);
+            let found = found.map_err(|error| refuse(error.to_string()))?;
+            if found.distance <= 0.0 {
+                return Err(refuse(format!("{} presses into {}", solid.name(), self.name)).at(&found.first));
+            }
+        }
+        Ok(())
+    }
+
+    /// Both fingertips touch the rim, behind the centre and on either side of it, and the object moves by `way` along the
+    /// ray from the middle of the contacts through its centre.
+    #[expect(clippy::too_many_arguments, reason = "one moment of a push")]
+    pub(super) fn check_contact(
+        &self,
+        site: Site,
+        time: f64,
+        robot: &Robot,
+        stage: &Stage,
+        object: usize,
+        way: &Vector2<f64>,
+        options: &VerifyOptions,
+    ) -> Result<(), Refusal> {
+        let (_, pose) = stage.object(object);
+        let centre = Point2::from(pose.translation.vector.xy());
+        let direction = way.normalize();
+        let [_, _, left, right] = robot.fingers;
+        let mut contacts = Vec::new();
+        for tip in [left, right] {
+            let name = robot.tree.link_names().get(tip).map_or("fingertip", |name| name);
+            let refuse = |text: String| site.refusal(time, RefusalKind::Push, text).about(name, &self.name);
+            let mut nearest: Option<darrt_geom::Clearance> = None;
+            for index in robot.solids_of(tip) {
+                let (solid, solid_pose) = stage.link_solid(index);
+                let found = clearance::between(&solid.body, solid_pose, &self.core, pose);
+                let found = found.map_err(|error| refuse(error.to_string()))?;
+                if nearest.is_none_or(|n| found.distance < n.distance) {
+                    nearest = Some(found);
+                }
+            }
+            let Some(found) = nearest else { return Err(refuse(format!("{name} has no shape to touch with"))) };
+            if found.distance > 2.0 * options.push_contact_m {
+                let gap = found.distance - options.push_contact_m;
+                let text = format!("{name} is {gap:.4} m from the rim of {} that it pushes", self.name);
+                return Err(refuse(text).at(&found.first));
+            }
+            let arm = found.first.xy() - centre;
+            if arm.dot(&direction) >= 0.0 {
+                return Err(refuse(format!("{name} touches {} in front of its centre", self.name)).at(&found.first));
+            }
+            contacts.push(arm);
+        }
+        let [a, b] = contacts[..] else { return Ok(()) };
+        let refuse = |text: String| site.refusal(time, RefusalKind::Push, text);
+        if direction.perp(&a) * direction.perp(&b) >= 0.0 {
+            return Err(refuse(format!("both fingertips touch {} on the same side of its way", self.name)));
+        }
+        let ray = -(a + b);
+        let angle = ray.perp(&direction).atan2(ray.dot(&direction)).abs();
+        if angle > options.push_ray_rad {
+            let (angle, bound) = (angle.to_degrees(), options.push_ray_rad.to_degrees());
+            let name = &self.name;
+            let text = format!(
+                "{name} moves {angle:.2} degrees off the ray from the contacts through its centre, at most {bound:.2}"
+            );
+            return Err(refuse(text));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,156 @@
+//! States of a plan: reading waypoints, and what lies between two of them.
+
+use darrt_primitives::kinematics::limit::wrap_to_pi;
+use nalgebra::Isometry3;
+
+use super::options::VerifyOptions;
+use super::robot::{Robot, Role};
+use super::world::World;
+use crate::plan_file::{Pose, Waypoint};
+
+/// Where everything stands, by index.
+#[derive(Debug, Clone)]
+pub(super) struct State {
+    pub(super) base: [f64; 3],
+    /// By variable of the robot's tree.
+    pub(super) joints: Vec<f64>,
+    /// By movable object.
+    pub(super) objects: Vec<Isometry3<f64>>,
+}
+
+/// How far a quaternion's length may be from one.
+const UNIT: f64 = 1e-6;
+
+/// Largest coordinate of anything, metres (and radians of a base's yaw).
+const FARTHEST: f64 = 1e4;
+
+impl State {
+    /// The state that a waypoint describes, or what is wrong with it.
+    pub(super) fn read(waypoint: &Waypoint, robot: &Robot, world: &World<'_>) -> Result<Self, String> {
+        for (name, value) in ["x", "y", "yaw"].into_iter().zip(waypoint.base) {
+            in_range(&format!("the base's {name}"), value)?;
+        }
+        let joints = robot.table.variables(&waypoint.joints).map_err(|flaw| flaw.to_string())?;
+        if let Some(name) = waypoint.objects.keys().find(|name| world.object(name).is_none()) {
+            return Err(format!("there is no object `{name}` in the problem"));
+        }
+        let mut objects = Vec::with_capacity(world.movables.len());
+        for movable in &world.movables {
+            let name = &movable.spec.name;
+            let pose = waypoint.objects.get(name).ok_or_else(|| format!("the pose of `{name}` is missing"))?;
+            objects.push(sound(name, *pose)?);
+        }
+        Ok(Self { base: waypoint.base, joints, objects })
+    }
+}
+
+fn in_range(what: &str, value: f64) -> Result<(), String> {
+    if value.abs() <= FARTHEST {
+        return Ok(());
+    }
+    Err(format!("{what} is {value}, it must lie in [-{FARTHEST}, {FARTHEST}]"))
+}
+
+/// The pose, if its numbers are fit.
+pub(super) fn sound(name: &str, pose: Pose) -> Result<Isometry3<f64>, String> {
+    for value in pose.position {
+        in_range(&format!("a coordinate of `{name}`"), value)?;
+    }
+    let norm = pose.quaternion.iter().map(|q| q * q).sum::<f64>().sqrt();
+    if (norm - 1.0).abs() <= UNIT {
+        return Ok(pose.into());
+    }
+    Err(format!("the quaternion of `{name}` has the norm {norm}, it must be 1 within {UNIT}"))
+}
+
+/// The straight way between two states.
+#[derive(Debug)]
+pub(super) struct Segment<'a> {
+    pub(super) from: &'a State,
+    pub(super) to: &'a State,
+    /// The way of x, y and yaw.
+    pub(super) base: [f64; 3],
+    /// The way of each variable.
+    pub(super) joints: Vec<f64>,
+}
+
+/// What differs between the ends of a segment, by who may change it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Changes {
+    pub(super) base: bool,
+    pub(super) arm: bool,
+    /// By how much the hand opens, radians of its finger joint.
+    pub(super) finger: f64,
+    /// A joint that nothing may move.
+    pub(super) parked: Option<usize>,
+}
+
+impl<'a> Segment<'a> {
+    pub(super) fn new(from: &'a State, to: &'a State, robot: &Robot) -> Self {
+        let [x, y, yaw] = [0, 1, 2].map(|i| to.base[i] - from.base[i]);
+        let joints = from.joints.iter().zip(&to.joints).enumerate();
+        let joints = joints.map(|(i, (a, b))| if robot.is_continuous(i) { wrap_to_pi(b - a) } else { b - a });
+        Self { from, to, base: [x, y, wrap_to_pi(yaw)], joints: joints.collect() }
+    }
+
+    /// A turning joint, or the yaw, that would go half a turn: then neither way is the shorter one.
+    pub(super) fn half_turn(&self, robot: &Robot) -> Option<String> {
+        let is_half = |angle: f64| angle.abs() > std::f64::consts::PI - 1e-9;
+        if is_half(self.base[2]) {
+            return Some("the base's yaw".to_owned());
+        }
+        let joint = (0..self.joints.len()).find(|&i| robot.is_continuous(i) && is_half(self.joints[i]))?;
+        Some(format!("`{}`", robot.joint_name(joint)))
+    }
+
+    pub(super) fn changes(&self, robot: &Robot) -> Changes {
+        let moved = |role: Role| {
+            let mut both = self.from.joints.iter().zip(&self.to.joints).zip(&robot.roles);
+            both.position(|((a, b), r)| *r == role && a != b)
+        };
+        Changes {
+            base: self.from.base != self.to.base,
+            arm: moved(Role::Arm).is_some(),
+            finger: self.joints.get(robot.finger_joint).copied().unwrap_or(0.0),
+            parked: moved(Role::Parked),
+        }
+    }
+
+    /// In how many equal parts to look at it. `rates`: see [`Robot::travel_rates`].
+    pub(super) fn parts(&self, rates: &[f64], options: &VerifyOptions) -> usize {
+        let [x, y, yaw] = self.base;
+        let turns = self.joints.iter().chain([&yaw]);
+        let travel: f64 = turns.clone().zip(rates).map(|(turn, rate)| turn.abs() * rate).sum();
+        let pushed = self.from.objects.iter().zip(&self.to.objects);
+        let pushed = pushed.map(|(a, b)| (a.translation.vector - b.translation.vector).norm()).fold(0.0, f64::max);
+        let by_travel = (travel + x.hypot(y)).max(pushed) / options.travel_m;
+        let by_turn = turns.map(|turn| turn.abs()).fold(0.0, f64::max) / options.joint_rad;
+        // Both are finite: coordinates are bounded and turns are wrapped or within limits.
+        by_travel.max(by_turn).ceil().clamp(1.0, 1e9) as usize
+    }
+
+    /// Writes base and joints at `s` in `[0, 1]`; exactly the ends at the ends.
+    pub(super) fn robot_at(&self, s: f64, out: &mut State) {
+        if s >= 1.0 {
+            out.base = self.to.base;
+            out.joints.clone_from(&self.to.joints);
+            return;
+        }
+        for ((slot, from), way) in out.base.iter_mut().zip(self.from.base).zip(self.base) {
+            *slot = from + s * way;
+        }
+        for ((slot, from), way) in out.joints.iter_mut().zip(&self.from.joints).zip(&self.joints) {
+            *slot = from + s * way;
+        }
+    }
+
+    /// The pose of an object that slides from one end to the other without turning.
+    pub(super) fn slid(&self, object: usize, s: f64) -> Option<Isometry3<f64>> {
+        let (from, to) = (self.from.objects.get(object)?, self.to.objects.get(object)?);
+        let mut pose = *to;
+        if s < 1.0 {
+            pose.translation.vector = from.translation.vector.lerp(&to.translation.vector, s);
+        }
+        Some(pose)
+    }
+}

@@ -1,0 +1,238 @@
+//! The robot as the verifier sees it: the tree of the description, its boxes one by one, its limits.
+//!
+//! Nothing here goes through the planner's model: poses come from the general tree, geometry from the description.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use darrt_primitives::kinematics::tree::{Drive, KinematicTree, LinkMotion};
+use darrt_primitives::kinematics::{JointLimit, RobotDescription, link_bodies, mesh_folders};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+
+use super::refusal::{Refusal, RefusalKind};
+use super::solid::Solid;
+use crate::arm::{JOINT_NAMES, Side};
+use crate::model::URDF;
+use crate::plan_file::{JointTable, finger_links, tool_link};
+use crate::problem_file::{ArmSide, Limits, ProblemFile};
+use crate::self_collision;
+
+/// One solid of one link.
+#[derive(Debug)]
+pub(super) struct LinkSolid {
+    pub(super) link: usize,
+    pub(super) link_from_solid: Isometry3<f64>,
+    pub(super) solid: Solid,
+}
+
+/// What may move a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// One of the seven joints of the manipulating arm.
+    Arm,
+    /// The finger joint of the manipulating hand.
+    Finger,
+    /// Torso, head, parked arm: stands still.
+    Parked,
+}
+
+/// The robot.
+#[derive(Debug)]
+pub(super) struct Robot {
+    pub(super) tree: KinematicTree,
+    pub(super) table: JointTable,
+    pub(super) solids: Vec<LinkSolid>,
+    /// Indices into `solids`.
+    pub(super) self_pairs: Vec<(usize, usize)>,
+    /// By variable.
+    pub(super) roles: Vec<Role>,
+    /// By variable.
+    pub(super) limits: Vec<JointLimit>,
+    pub(super) side: Side,
+    pub(super) tool: usize,
+    /// Links of the manipulating hand that may touch things: two fingers, then two tips.
+    pub(super) fingers: [usize; 4],
+    /// The variable that opens the manipulating hand.
+    pub(super) finger_joint: usize,
+}
+
+impl Robot {
+    pub(super) fn new(problem: &ProblemFile) -> Result<Self, Refusal> {
+        let refuse = |error: &dyn std::fmt::Display| {
+            Refusal::whole(RefusalKind::Problem, format!("the robot of the problem cannot be built: {error}"))
+        };
+        let (description, folders) = match &problem.robot.urdf {
+            None => (RobotDescription::from_text(URDF), Vec::new()),
+            Some(path) => (RobotDescription::from_file(path), path.parent().map(PathBuf::from).into_iter().collect()),
+        };
+        let description = description.map_err(|e| refuse(&e))?;
+        let tree = KinematicTree::new(&description).map_err(|e| refuse(&e))?;
+        let bodies = link_bodies(&description, &tree, &mesh_folders(&folders)).map_err(|e| refuse(&e))?;
+        let mut solids = Vec::new();
+        for (link, body) in bodies.iter().enumerate() {
+            for part in body.iter().flat_map(|body| &body.parts) {
+                let name = tree.link_names().get(link).cloned().unwrap_or_else(|| Arc::from("link"));
+                let solid = Solid::new(&name, part.shape.clone()).map_err(|e| refuse(&e))?;
+                solids.push(LinkSolid { link, link_from_solid: part.body_from_shape, solid });
+            }
+        }
+        let side = match problem.robot.arm {
+            ArmSide::Right => Side::Right,
+            ArmSide::Left => Side::Left,
+        };
+        let link = |name: &str| tree.link_index(name).ok_or_else(|| refuse(&format!("it has no link `{name}`")));
+        let [f1, f2, f3, f4] = finger_links(side);
+        let fingers = [link(&f1)?, link(&f2)?, link(&f3)?, link(&f4)?];
+        let tool = link(&tool_link(side))?;
+        let variable =
+            |name: &str| tree.variable_index(name).ok_or_else(|| refuse(&format!("it has no joint `{name}`")));
+        let finger_joint = variable(&format!("{}_gripper_l_finger_joint", side.prefix()))?;
+        let mut roles = vec![Role::Parked; tree.variables().len()];
+        for name in JOINT_NAMES {
+            roles[variable(&format!("{}_{name}_joint", side.prefix()))?] = Role::Arm;
+        }
+        roles[finger_joint] = Role::Finger;
+        let limits = tree.variables().iter().zip(&roles).map(|(variable, role)| {
+            // What stands still was put there by the problem, which may use the whole range.
+            let is_soft = *role == Role::Arm && problem.robot.limits == Limits::Soft;
+            if is_soft { variable.soft_limit } else { variable.limit }
+        });
+        let limits = limits.collect();
+        let self_pairs = self_pairs(&tree, &solids, side);
+        let table = JointTable::new(&description, &tree);
+        Ok(Self { tree, table, solids, self_pairs, roles, limits, side, tool, fingers, finger_joint })
+    }
+
+    /// Name of a variable's joint.
+    pub(super) fn joint_name(&self, variable: usize) -> &str {
+        self.tree.variables().get(variable).map_or("joint", |v| &v.name)
+    }
+
+    /// Whether a variable turns without end.
+    pub(super) fn is_continuous(&self, variable: usize) -> bool {
+        self.tree.variables().get(variable).is_some_and(|v| v.limit.is_unlimited())
+    }
+
+    /// The link of the manipulating hand's finger or tip called `name`.
+    pub(super) fn is_finger(&self, name: &str) -> bool {
+        self.fingers.iter().any(|link| self.tree.link_names().get(*link).is_some_and(|n| &**n == name))
+    }
+
+    /// Indices of the solids of a link.
+    pub(super) fn solids_of(&self, link: usize) -> impl Iterator<Item = usize> + '_ {
+        self.solids.iter().enumerate().filter(move |(_, solid)| solid.link == link).map(|(index, _)| index)
+    }
+
+    /// Writes the world pose of every link.
+    pub(super) fn link_poses(&self, base: &[f64; 3], joints: &[f64], out: &mut Vec<Isometry3<f64>>) {
+        out.resize(self.tree.link_count(), Isometry3::identity());
+        let [x, y, yaw] = *base;
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
+        // Both slices have the tree's own lengths.
+        let written = self.tree.forward(joints, &Isometry3::from_parts(Translation3::new(x, y, 0.0), turn), out);
+        debug_assert!(written.is_ok(), "{written:?}");
+    }
+
+    /// How far the robot, with something that reaches `held_m` beyond the tool frame, extends from each link's origin.
+    fn extents(&self, held_m: f64) -> Vec<f64> {
+        let count = self.tree.link_count();
+        let mut extents = vec![0.0_f64; count];
+        for solid in &self.solids {
+            let reach = solid.link_from_solid.translation.vector.norm() + solid.solid.reach();
+            extents[solid.link] = extents[solid.link].max(reach);
+        }
+        extents[self.tool] = extents[self.tool].max(held_m);
+        // Children come after their parents.
+        for link in (1..count).rev() {
+            let offset = self.tree.parent_from_link(link).map_or(0.0, |pose| pose.translation.vector.norm());
+            let slide = match self.tree.motion(link) {
+                Some(LinkMotion::Sliding { drive, .. }) => self.farthest(drive),
+                _ => 0.0,
+            };
+            if let Some(parent) = self.tree.parent(link) {
+                extents[parent] = extents[parent].max(offset + slide + extents[link]);
+            }
+        }
+        extents
+    }
+
+    /// Largest displacement of a sliding joint.
+    fn farthest(&self, drive: &Drive) -> f64 {
+        let limit = self.tree.variables().get(drive.variable).map_or(JointLimit::UNLIMITED, |v| v.limit);
+        let at = |value: f64| (drive.multiplier * value + drive.offset).abs();
+        at(limit.lower).max(at(limit.upper)).min(1e3)
+    }
+
+    /// Bound on the metres that any point travels per unit of each variable, and per radian of base yaw (last).
+    pub(super) fn travel_rates(&self, held_m: f64) -> Vec<f64> {
+        let extents = self.extents(held_m);
+        let mut rates = vec![0.0; self.tree.variables().len() + 1];
+        for (link, extent) in extents.iter().enumerate() {
+            match self.tree.motion(link) {
+                Some(LinkMotion::Turning { drive, .. }) => rates[drive.variable] += drive.multiplier.abs() * extent,
+                Some(LinkMotion::Sliding { drive, .. }) => rates[drive.variable] += drive.multiplier.abs(),
+                _ => {}
+            }
+        }
+        if let (Some(last), Some(root)) = (rates.last_mut(), extents.first()) {
+            *last = *root;
+        }
+        rates
+    }
+}
+
+/// Pairs of solids of links that can meet while the arm on `side` moves.
+fn self_pairs(tree: &KinematicTree, solids: &[LinkSolid], side: Side) -> Vec<(usize, usize)> {
+    let mut pairs = Vec::new();
+    for pair in self_collision::pairs(side) {
+        let (Some(moving), Some(other)) = (tree.link_index(&pair.moving), tree.link_index(&pair.other)) else {
+            continue;
+        };
+        let of = |link: usize| (0..).zip(solids).filter(move |(_, solid)| solid.link == link).map(|(i, _)| i);
+        pairs.extend(of(moving).flat_map(|a: usize| of(other).map(move |b: usize| (a, b))));
+    }
+    pairs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem_file::builtin;
+    use rand::{RngExt as _, SeedableRng as _};
+
+    #[test]
+    fn no_solid_travels_farther_than_the_rates_say() {
+        let robot = Robot::new(&builtin("plate1").unwrap()).unwrap();
+        let rates = robot.travel_rates(0.0);
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(9);
+        let (mut before, mut after) = (Vec::new(), Vec::new());
+        for _ in 0..200 {
+            let values: Vec<f64> =
+                robot.limits.iter().map(|l| rng.random_range(l.lower.max(-3.0)..l.upper.min(3.0))).collect();
+            let moved: Vec<f64> = values.iter().map(|v| v + rng.random_range(-0.05..0.05)).collect();
+            robot.link_poses(&[0.0; 3], &values, &mut before);
+            robot.link_poses(&[0.1, 0.0, 0.02], &moved, &mut after);
+            let bound = 0.1
+                + 0.02 * rates[values.len()]
+                + values.iter().zip(&moved).zip(&rates).map(|((a, b), r)| (a - b).abs() * r).sum::<f64>();
+            for solid in &robot.solids {
+                let (low, high) = solid.solid.shape().unwrap().local_aabb();
+                for corner in [low, high] {
+                    let p = solid.link_from_solid * corner;
+                    let travel = (after[solid.link] * p - before[solid.link] * p).norm();
+                    assert!(travel <= bound, "{}: {travel} > {bound}", solid.solid.name());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn only_one_arm_and_one_finger_joint_may_move() {
+        let robot = Robot::new(&builtin("plate1").unwrap()).unwrap();
+        let count = |role| robot.roles.iter().filter(|r| **r == role).count();
+        assert_eq!((count(Role::Arm), count(Role::Finger)), (7, 1));
+        assert!(robot.is_finger("r_gripper_l_finger_tip_link") && !robot.is_finger("l_gripper_l_finger_tip_link"));
+        assert!(!robot.is_finger("r_gripper_palm_link"));
+        assert!(robot.self_pairs.len() > 100);
+    }
+}

@@ -1,0 +1,272 @@
+//! From a problem file to a problem that the planner can solve: robot, domain, start, goal, primitives, validity.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use darrt_core::primitive::Primitive;
+use darrt_core::state::{ObjectId, State};
+use darrt_geom::scene::Scene;
+use darrt_primitives::arm_space::ArmSpace;
+use darrt_primitives::goal::{Grip, ObjectGoal, TabletopGoal, Whereabouts};
+use darrt_primitives::manipulator::{Configuration, Manipulator};
+use darrt_primitives::mode::{Mode, SurfaceId};
+use darrt_primitives::object_space::{ObjectSpace, ObjectSpaceParts};
+use darrt_primitives::push::edge_stop::{EdgeRule, RimReach};
+use darrt_primitives::tabletop::{
+    ActionSettings, Movable, PlaceSettings, PushSettings, Support, Tabletop, TabletopState,
+};
+use nalgebra::{Isometry3, Point2, Vector3};
+
+use crate::arm::{ArmConfiguration, LimitKind, Side};
+use crate::grasp_families::{families, lift_m};
+use crate::model::{Pr2Model, WholeBody};
+use crate::planning_error::PlanningError;
+use crate::postures::ArmPosture;
+use crate::problem_file::{self as file, GoalState, GoalTarget, PrimitiveName, ProblemFile, Symmetry};
+use crate::robot::Pr2;
+
+/// The domain: the PR2 at tables.
+pub type World = Tabletop<Pr2>;
+/// Its state.
+pub type WorldState = TabletopState<Pr2>;
+
+/// Gap of the empty gripper where no action asks for another, metres.
+const TRAVEL_GAP: f64 = 0.08;
+/// Free distance that a rim grasp keeps between fingertips and edge, metres.
+const RIM_CLEARANCE: f64 = 0.01;
+/// Share of object samples that stand on a surface.
+const SURFACE_SHARE: f64 = 0.6;
+
+/// Everything that a problem file says, built.
+#[derive(Debug)]
+pub struct Built {
+    /// M.
+    pub world: World,
+    /// The initial state.
+    pub start: WorldState,
+    /// G.
+    pub goal: TabletopGoal,
+    /// The fixed bodies and the surfaces.
+    pub scene: Scene,
+}
+
+/// Builds robot, domain, start and goal.
+///
+/// # Errors
+/// [`PlanningError`] with the key at fault when the robot's description, a shape, a grasp or a number cannot be used.
+pub fn build(problem: &ProblemFile) -> Result<Built, PlanningError> {
+    let (robot, arm) = robot_of(problem)?;
+    let geometry = problem.geometry()?;
+    let bounds = &problem.bounds;
+    let lower = [bounds.base_x[0], bounds.base_y[0]];
+    let upper = [bounds.base_x[1], bounds.base_y[1]];
+    let space: ArmSpace<ArmConfiguration> = ArmSpace::new(lower, upper, robot.limits(), robot.joint_weights_m())?;
+
+    let surfaces = geometry.scene.surfaces();
+    let supports: Vec<Support> = surfaces
+        .iter()
+        .zip(&geometry.carriers)
+        .map(|(surface, carrier)| {
+            let body = carrier.and_then(|index| geometry.scene.bodies().get(index));
+            Support { surface: surface.clone(), bodies: body.iter().map(|b| Arc::clone(&b.body.name)).collect() }
+        })
+        .collect();
+    let objects = problem
+        .objects
+        .iter()
+        .zip(&geometry.objects)
+        .map(|(object, solid)| movable(problem, object, solid, surfaces, &robot))
+        .collect::<Result<Vec<_>, _>>()?;
+
+    let settings = settings(problem, robot.arm().side)?;
+    let robot = Arc::new(robot);
+    let world = World::new(robot, space, objects, supports, settings);
+    let start = State {
+        robot: Configuration { base: problem.robot.base, arm },
+        objects: geometry.objects.iter().map(|o| o.world_from_object).collect(),
+        mode: Mode::resting(geometry.objects.iter().map(|o| SurfaceId::new(o.surface)), TRAVEL_GAP),
+    };
+    let goal = goal(problem, &geometry.scene, &geometry.objects)?;
+    Ok(Built { world, start, goal, scene: geometry.scene })
+}
+
+/// The primitives that the problem allows, in the order of the paper.
+pub fn primitives(problem: &ProblemFile) -> Vec<Box<dyn Primitive<World>>> {
+    let one = |name: PrimitiveName| -> Box<dyn Primitive<World>> {
+        match name {
+            PrimitiveName::ArmTransit => Box::new(crate::arm_transit::ArmTransit),
+            PrimitiveName::StraightLineArmTransit => {
+                Box::new(crate::straight_line_arm_transit::StraightLineArmTransit)
+            }
+            PrimitiveName::ArmRigidTransfer => Box::new(crate::arm_rigid_transfer::ArmRigidTransfer),
+            PrimitiveName::BaseTransit => Box::new(crate::base_transit::BaseTransit),
+            PrimitiveName::BaseRigidTransfer => Box::new(crate::base_rigid_transfer::BaseRigidTransfer),
+            PrimitiveName::Pick => Box::new(crate::pick::Pick),
+            PrimitiveName::Place => Box::new(crate::place::Place),
+            PrimitiveName::Push => Box::new(crate::push::Push),
+        }
+    };
+    PrimitiveName::ALL.into_iter().filter(|name| problem.allows(*name)).map(one).collect()
+}
+
+/// The robot, and the start of its planned arm.
+fn robot_of(problem: &ProblemFile) -> Result<(Pr2, ArmConfiguration), PlanningError> {
+    let robot = &problem.robot;
+    let model = match &robot.urdf {
+        Some(path) => Pr2Model::from_file(path, &[path.parent().unwrap_or(Path::new(".")).to_path_buf()])?,
+        None => Pr2Model::embedded()?,
+    };
+    let side = match robot.arm {
+        file::ArmSide::Right => Side::Right,
+        file::ArmSide::Left => Side::Left,
+    };
+    let limits = match robot.limits {
+        file::Limits::Soft => LimitKind::Soft,
+        file::Limits::Hard => LimitKind::Hard,
+    };
+    let arm = arm_start("robot", robot.posture.as_deref(), robot.joints.as_deref(), side)?;
+    let other = arm_start("robot.other", robot.other_posture.as_deref(), robot.other_joints.as_deref(), side.other())?;
+    let mut rest = WholeBody { base: robot.base, torso_m: robot.torso_m, ..WholeBody::at_rest() };
+    for (at, value) in [(side, arm), (side.other(), other)] {
+        if let Some(slot) = rest.arms.get_mut(at.index()) {
+            *slot = value;
+        }
+    }
+    Ok((Pr2::new(model, side, limits, rest)?, arm))
+}
+
+fn arm_start(
+    key: &'static str,
+    posture: Option<&str>,
+    joints: Option<&[f64]>,
+    side: Side,
+) -> Result<ArmConfiguration, PlanningError> {
+    if let Some(joints) = joints {
+        let found = joints.len();
+        return joints.try_into().map_err(|_| PlanningError::JointCount { key, found });
+    }
+    Ok(posture_named(posture.unwrap_or(file::robot::DEFAULT_POSTURE))?.values(side))
+}
+
+fn posture_named(name: &str) -> Result<ArmPosture, PlanningError> {
+    ArmPosture::from_name(name).ok_or_else(|| PlanningError::UnknownPosture { name: name.to_owned() })
+}
+
+fn movable(
+    problem: &ProblemFile,
+    object: &file::Object,
+    solid: &file::geometry::StartingObject,
+    surfaces: &[darrt_geom::SupportSurface],
+    robot: &Pr2,
+) -> Result<(ObjectSpace, Movable), PlanningError> {
+    let allowed = problem.allowed_surfaces(object);
+    let is_allowed = |s: &darrt_geom::SupportSurface| allowed.contains(&s.name());
+    let reach_m = solid.body.parts.iter().fold(0.0_f64, |most, part| {
+        let (centre, radius) = part.shape.bounding_sphere();
+        most.max((part.body_from_shape * centre).coords.norm() + radius)
+    });
+    let radius = object.shape.round_radius();
+    let bounds = &problem.bounds;
+    let space = ObjectSpace::new(ObjectSpaceParts {
+        lower: [bounds.object_x[0], bounds.object_y[0], bounds.object_z[0]],
+        upper: [bounds.object_x[1], bounds.object_y[1], bounds.object_z[1]],
+        is_round: object.symmetry() == Symmetry::Z,
+        metres_per_rad: radius.unwrap_or(reach_m),
+        half_height_m: solid.depth_below_origin,
+        surfaces: surfaces.iter().filter(|s| is_allowed(s)).cloned().collect(),
+        surface_share: SURFACE_SHARE,
+    })?;
+    let ids = surfaces.iter().enumerate().filter(|(_, s)| is_allowed(s)).map(|(i, _)| SurfaceId::new(i)).collect();
+    let rim = RimReach { insertion: object.rim.insertion_m, clearance: RIM_CLEARANCE, ..RimReach::default() };
+    let named = |source| PlanningError::Grasp { object: object.name.clone(), source };
+    let movable = Movable {
+        body: solid.body.clone(),
+        round_radius_m: radius,
+        half_height_m: solid.depth_below_origin,
+        reach_m,
+        is_pushable: object.pushable(),
+        surfaces: ids,
+        grasps: families(object, robot.hand()).map_err(named)?,
+        rim,
+        lift_m: lift_m(object),
+    };
+    Ok((space, movable))
+}
+
+fn settings(problem: &ProblemFile, side: Side) -> Result<ActionSettings<ArmConfiguration>, PlanningError> {
+    let push = &problem.push;
+    let postures = problem.transit.postures.iter().map(|name| Ok(posture_named(name)?.values(side)));
+    let release_gap_m = problem.objects.iter().map(|o| o.rim.opening_m).fold(0.0, f64::max);
+    Ok(ActionSettings {
+        push: PushSettings {
+            gap_m: push.gap_m,
+            fingertip_clearance_m: push.fingertip_clearance_m,
+            standoff_m: push.standoff_m,
+            approach_m: push.approach_m,
+            edge_rule: match push.edge_rule {
+                file::EdgeRule::NearestEdgePoint => EdgeRule::NearestEdgePoint,
+                file::EdgeRule::LineCrossing => EdgeRule::LineCrossing,
+            },
+            edge_distance_m: push.edge_distance_m,
+        },
+        place: PlaceSettings {
+            approach_directions: problem
+                .place
+                .approach_directions
+                .iter()
+                .filter_map(|d| Vector3::from(*d).try_normalize(1e-9))
+                .collect(),
+            approach_m: problem.place.approach_m,
+            release_gap_m,
+        },
+        retreat_m: push.retreat_m.min(problem.place.retreat_m),
+        least_line_share: 0.5,
+        line_step_m: 0.02,
+        drives: [problem.allows(PrimitiveName::BaseTransit), problem.allows(PrimitiveName::BaseRigidTransfer)],
+        base_tries: 8,
+        grasp_tries: 4,
+        postures: postures.collect::<Result<_, PlanningError>>()?,
+        travel_gap_m: TRAVEL_GAP,
+    })
+}
+
+fn goal(
+    problem: &ProblemFile,
+    scene: &Scene,
+    solids: &[file::geometry::StartingObject],
+) -> Result<TabletopGoal, PlanningError> {
+    let mut groups = Vec::new();
+    for (name, alternatives) in problem.goal.by_object() {
+        let unknown = || PlanningError::UnknownObject { name: name.to_owned() };
+        let index = problem.objects.iter().position(|o| o.name == name).ok_or_else(unknown)?;
+        let solid = solids.get(index).ok_or_else(unknown)?;
+        let group = alternatives.iter().filter_map(|goal| one_goal(ObjectId::new(index), goal, scene, solid));
+        groups.push(group.collect());
+    }
+    Ok(TabletopGoal::new(groups))
+}
+
+/// `None` when the goal's keys contradict each other, which the file's validation has refused.
+fn one_goal(
+    object: ObjectId,
+    goal: &file::ObjectGoal,
+    scene: &Scene,
+    solid: &file::geometry::StartingObject,
+) -> Option<ObjectGoal> {
+    let centre = |pose: Isometry3<f64>| Whereabouts::At(pose.translation.vector);
+    let whereabouts = match goal.target()? {
+        GoalTarget::On { .. } | GoalTarget::At { .. } => centre(solid.world_from_goal(goal, scene)?),
+        GoalTarget::Within { surface, region } => Whereabouts::Within {
+            surface: SurfaceId::new(scene.surfaces().iter().position(|s| s.name() == surface)?),
+            min: Point2::from(region.min),
+            max: Point2::from(region.max),
+        },
+    };
+    let grip = match goal.state() {
+        GoalState::Released => Grip::Released,
+        GoalState::Held => Grip::Held,
+        GoalState::Any => Grip::Any,
+    };
+    let yaw = goal.yaw.map(|yaw| (yaw, goal.yaw_tolerance));
+    Some(ObjectGoal { object, whereabouts, tolerance_m: goal.tolerance_m, yaw, grip })
+}

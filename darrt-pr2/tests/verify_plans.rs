@@ -1,0 +1,50 @@
+//! The verifier on plans made by hand: three right ones, and dozens of ways to make them wrong.
+
+#[path = "verify_plans/builder.rs"]
+mod builder;
+#[path = "verify_plans/plans.rs"]
+mod plans;
+#[path = "verify_plans/wrong.rs"]
+mod wrong;
+
+use darrt_pr2::plan_file::PlanFile;
+use darrt_pr2::verify::{VerifyOptions, verify, verify_with};
+
+fn proven(plan: &PlanFile) -> darrt_pr2::verify::Proof {
+    verify(plan).unwrap_or_else(|refusal| panic!("{refusal}"))
+}
+
+#[test]
+fn right_plans_are_proven() {
+    for (plan, steps) in [(plans::push(), 3), (plans::carry(), 7), (plans::wave(), 2)] {
+        let proof = proven(&plan);
+        assert_eq!(proof.steps, steps);
+        assert_eq!(proof.waypoints, plan.steps.iter().map(|step| step.waypoints.len()).sum::<usize>());
+        assert!(proof.states > proof.waypoints as u64);
+        let nearest = proof.smallest_clearance.unwrap();
+        assert!(nearest.distance_m > 0.0 && nearest.step <= steps, "{nearest:?}");
+        println!("{} states, {} exact tests, {nearest:?}", proof.states, proof.exact_tests);
+    }
+}
+
+#[test]
+fn proofs_survive_the_file() {
+    for plan in [plans::push(), plans::carry()] {
+        let text = plan.to_json().unwrap();
+        let back = PlanFile::from_json(&text, "text").unwrap();
+        assert_eq!(back, plan);
+        assert_eq!(proven(&back), proven(&plan));
+    }
+}
+
+#[test]
+fn a_finer_replay_looks_at_more_states() {
+    let plan = plans::push();
+    let fine = VerifyOptions { travel_m: 1e-3, ..VerifyOptions::default() };
+    let proof = verify_with(&plan, &fine).unwrap();
+    assert!(proof.states > 2 * proven(&plan).states);
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let refusal = verify_with(&plan, &VerifyOptions { travel_m: bad, ..VerifyOptions::default() }).unwrap_err();
+        assert!(refusal.to_string().contains("travel_m"), "{refusal}");
+    }
+}

@@ -1,0 +1,76 @@
+//! The building blocks of the primitives: functions that turn a state and a wish into instances, for any
+//! [`Manipulator`](crate::manipulator::Manipulator). Obstacles are invisible here.
+//!
+//! | wish | file |
+//! |---|---|
+//! | follow a straight line of the hand | [`line`] |
+//! | retreat from what the hand stands at | [`retreat`] |
+//! | go to a configuration, alone or with an object in the hand | [`travel`] |
+//! | find a base and an arm configuration for a hand pose | [`stance`] |
+//! | push an object | [`push`] |
+//! | grasp and lift | [`pick`] |
+//! | carry to a pose in the air | [`transfer`] |
+//! | set down | [`place`] |
+
+use darrt_core::primitive::{Infeasible, Instances};
+
+use crate::tabletop::{Tabletop, TabletopState};
+
+pub mod line;
+pub mod pick;
+pub mod place;
+pub mod push;
+pub mod retreat;
+pub mod stance;
+pub mod transfer;
+pub mod travel;
+
+/// Instances in the making: each new one starts where the last ended.
+#[derive(Debug)]
+pub struct Chain<M: crate::manipulator::Manipulator> {
+    /// What has been put together so far.
+    pub instances: Instances<Tabletop<M>>,
+    /// Where it ends.
+    pub end: TabletopState<M>,
+}
+
+impl<M: crate::manipulator::Manipulator> Chain<M> {
+    /// An empty chain at `from`.
+    pub fn at(from: &TabletopState<M>) -> Self {
+        Self { instances: Vec::new(), end: from.clone() }
+    }
+
+    /// Adds an instance.
+    pub fn push(&mut self, m: &Tabletop<M>, instance: darrt_core::motion::Instance<Tabletop<M>>) {
+        instance.motion.at_into(m, 1.0, &mut self.end);
+        self.instances.push(instance);
+    }
+
+    /// The instances, or [`Infeasible::NoProgress`] if there are none.
+    ///
+    /// # Errors
+    /// [`Infeasible::NoProgress`] for an empty chain.
+    pub fn finish(self) -> Result<Instances<Tabletop<M>>, Infeasible> {
+        if self.instances.is_empty() { Err(Infeasible::NoProgress) } else { Ok(self.instances) }
+    }
+}
+
+/// The names of the paper's primitives (section 5.1), for instances.
+pub mod label {
+    /// The arm moves alone.
+    pub const ARM_TRANSIT: &str = "Arm-Transit";
+    /// The hand moves on a straight line, empty.
+    pub const STRAIGHT_LINE_ARM_TRANSIT: &str = "Straight-Line-Arm-Transit";
+    /// The arm moves with an object in the hand.
+    pub const ARM_RIGID_TRANSFER: &str = "Arm-Rigid-Transfer";
+    /// The base moves alone.
+    pub const BASE_TRANSIT: &str = "Base-Transit";
+    /// The base moves with an object in the hand.
+    pub const BASE_RIGID_TRANSFER: &str = "Base-Rigid-Transfer";
+    /// An object is attached and lifted.
+    pub const PICK: &str = "Pick";
+    /// An object is set down and let go.
+    pub const PLACE: &str = "Place";
+    /// An object is pushed.
+    pub const PUSH: &str = "Push";
+}

@@ -1,0 +1,148 @@
+//! Grasping an object and lifting it from its support.
+
+use darrt_core::motion::Instance;
+use darrt_core::primitive::{Infeasible, Instances};
+use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
+use nalgebra::{Isometry3, Point2, Vector3};
+use rand::{Rng, RngExt};
+
+use super::push::approach;
+use super::retreat::retreat;
+use super::stance::stance;
+use super::{Chain, label, line};
+use crate::arm_motion::{ArmMotion, Carried, Waypoint};
+use crate::grasp::rim::rim_is_graspable;
+use crate::grasp::{Grasp, GraspKind};
+use crate::manipulator::{Configuration, Manipulator};
+use crate::mode::{Contacts, Held, TouchReason};
+use crate::tabletop::{Movable, Tabletop, TabletopState};
+
+/// The arm's way of one pick.
+struct Way<J> {
+    base: [f64; 3],
+    /// From the pregrasp pose to the grasp.
+    in_: Vec<J>,
+    /// From the grasp up.
+    up: Vec<J>,
+}
+
+/// Retreat, transit to the pregrasp pose, straight in, attach and lift.
+///
+/// # Errors
+/// [`Infeasible::NoGrasp`] if no grasp fits where the object stands (a plate whose rim does not overhang),
+/// [`Infeasible::Unreachable`] if the arm reaches none of those tried.
+pub fn pick<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    object: ObjectId,
+    rng: &mut dyn Rng,
+) -> Result<Instances<Tabletop<M>>, Infeasible> {
+    let movable = m.movable(object).ok_or(Infeasible::NoGrasp)?;
+    let pose = from.object(object).ok_or(Infeasible::NoGrasp)?;
+    if movable.grasps.is_empty() {
+        return Err(Infeasible::NoGrasp);
+    }
+    let mut fitted = 0;
+    for _ in 0..m.settings().grasp_tries * GRASPS_PER_TRY {
+        let Some(family) = movable.grasps.get(rng.random_range(0..movable.grasps.len())) else { continue };
+        let grasp = family.sample(rng);
+        if !fits(m, from, object, movable, pose, &grasp) {
+            continue;
+        }
+        fitted += 1;
+        let at_grasp = grasp.world_from_tool(pose);
+        if let Some(way) = stance(m, from, &at_grasp, rng, |q| way_of(m, q, &at_grasp, &grasp, movable)) {
+            return assemble(m, from, object, pose, &grasp, &way, rng);
+        }
+        if fitted >= m.settings().grasp_tries {
+            break;
+        }
+    }
+    Err(if fitted == 0 { Infeasible::NoGrasp } else { Infeasible::Unreachable })
+}
+
+/// How many grasps are drawn for one that is tried: most rim grasps meet the table.
+const GRASPS_PER_TRY: usize = 16;
+
+/// Could the fingers close here, as far as the object and its own support can tell?
+fn fits<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    object: ObjectId,
+    movable: &Movable,
+    pose: &Isometry3<f64>,
+    grasp: &Grasp,
+) -> bool {
+    let GraspKind::Rim { azimuth, .. } = grasp.kind else { return true };
+    let Some(surface) = from.mode.support_of(object).and_then(|s| m.surface(s)) else { return true };
+    let Some(radius) = movable.round_radius_m else { return false };
+    let yaw = pose.rotation.euler_angles().2;
+    let center = Point2::new(pose.translation.x, pose.translation.y);
+    rim_is_graspable(surface, &center, radius, azimuth + yaw, movable.rim.insertion, movable.rim.clearance)
+}
+
+fn way_of<M: Manipulator>(
+    m: &Tabletop<M>,
+    q: &Configuration<M::Joints>,
+    at_grasp: &Isometry3<f64>,
+    grasp: &Grasp,
+    movable: &Movable,
+) -> Option<Way<M::Joints>> {
+    let back = at_grasp.rotation * Vector3::new(-grasp.approach_m, 0.0, 0.0);
+    let out = line::follow(m, &q.base, &q.arm, at_grasp, &back);
+    if out.share < m.settings().least_line_share {
+        return None;
+    }
+    let [least, best] = movable.lift_m;
+    let up = line::follow(m, &q.base, &q.arm, at_grasp, &(Vector3::z() * best));
+    if up.share * best < least {
+        return None;
+    }
+    let in_ = out.arms.iter().rev().copied().chain([q.arm]).collect();
+    Some(Way { base: q.base, in_, up: up.arms })
+}
+
+fn assemble<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    object: ObjectId,
+    pose: &Isometry3<f64>,
+    grasp: &Grasp,
+    way: &Way<M::Joints>,
+    rng: &mut dyn Rng,
+) -> Result<Instances<Tabletop<M>>, Infeasible> {
+    let mut chain = Chain::at(from);
+    retreat(m, &mut chain)?;
+    let support = chain.end.mode.support_of(object).ok_or(Infeasible::OffSupport)?;
+    approach(m, &mut chain, object, way.base, &way.in_, grasp.open_gap_m, straddling(object, grasp), rng)?;
+
+    // The grasp as the hand really stands, so that the object does not jump by a rounding error.
+    let tool_from_object = m.manipulator().world_from_tool(&chain.end.robot).inverse() * pose;
+    let held = Held { object, tool_from_object };
+    let mode = chain.end.mode.attached(held, grasp.closed_gap_m).ok_or(Infeasible::NoGrasp)?;
+    let waypoints: Vec<_> = way
+        .up
+        .iter()
+        .map(|arm| Waypoint { robot: Configuration { base: way.base, arm: *arm }, pushed: 0.0 })
+        .collect();
+    let motion = ArmMotion::new(m, &chain.end, &waypoints, Carried::Held(held), mode.clone(), mode);
+    let instance = Instance {
+        label: label::PICK,
+        motion: Box::new(motion),
+        contacts: Contacts { fingers: Some((object, TouchReason::Grasp)), support: Some((object, support)) },
+        moves: ComponentSet::ROBOT.with(ComponentId::Object(object)),
+        object: Some(object),
+        reversible: false,
+    };
+    chain.push(m, instance);
+    chain.finish()
+}
+
+/// What the open fingers may touch around the object. A bowl's inner finger stands inside the solid that stands for the
+/// bowl; every other grasp keeps clear until it closes.
+pub(super) fn straddling(object: ObjectId, grasp: &Grasp) -> Contacts {
+    match grasp.kind {
+        GraspKind::Wall { .. } => Contacts { fingers: Some((object, TouchReason::Grasp)), support: None },
+        _ => Contacts::default(),
+    }
+}

@@ -1,0 +1,122 @@
+//! Setting the held object down on a surface and letting go.
+
+use darrt_core::domain::Domain;
+use darrt_core::motion::Instance;
+use darrt_core::primitive::{Infeasible, Instances};
+use darrt_core::state::{ComponentId, ComponentSet};
+use nalgebra::{Isometry3, Vector3};
+use rand::{Rng, RngExt};
+
+use super::retreat::retreat;
+use super::stance::stance;
+use super::travel::travel;
+use super::{Chain, label, line};
+use crate::arm_motion::{ArmMotion, Carried, Waypoint};
+use crate::manipulator::{Configuration, Manipulator};
+use crate::mode::{Contacts, Held, SurfaceId, TouchReason};
+use crate::object_space::upright;
+use crate::tabletop::{Tabletop, TabletopState};
+
+/// A target whose bottom is this near to a surface is meant to stand on it; metres (the authors' TABLE_CONTAINS).
+pub const ON_SURFACE_M: f64 = 0.05;
+
+/// The arm's way of one place.
+struct Way<J> {
+    base: [f64; 3],
+    /// From the preplace pose to where the object stands.
+    down: Vec<J>,
+}
+
+/// Transfer to above the place, straight in, let go, and retreat.
+///
+/// `target` is the pose of the held object; for a round object its yaw is free and drawn anew.
+///
+/// # Errors
+/// [`Infeasible::NoGrasp`] if nothing is held, [`Infeasible::OffSupport`] if the target does not lie on a surface
+/// allowed for the object, [`Infeasible::Unreachable`].
+pub fn place<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    target: &Isometry3<f64>,
+    rng: &mut dyn Rng,
+) -> Result<Instances<Tabletop<M>>, Infeasible> {
+    let held = *from.mode.held().ok_or(Infeasible::NoGrasp)?;
+    let surface = m.surface_under(held.object, target, ON_SURFACE_M).ok_or(Infeasible::OffSupport)?;
+    let standing = standing_pose(m, &held, surface, target, rng).ok_or(Infeasible::OffSupport)?;
+    let at_place = standing * held.tool_from_object.inverse();
+
+    let directions = &m.settings().place.approach_directions;
+    let down = match directions.len() {
+        0 => -Vector3::z(),
+        n => directions.get(rng.random_range(0..n)).copied().unwrap_or(-Vector3::z()),
+    };
+    let way = stance(m, from, &at_place, rng, |q| way_of(m, q, &at_place, &down)).ok_or(Infeasible::Unreachable)?;
+    assemble(m, from, &held, surface, &way, rng)
+}
+
+/// Upright on the surface over the target's x and y.
+fn standing_pose<M: Manipulator>(
+    m: &Tabletop<M>,
+    held: &Held,
+    surface: SurfaceId,
+    target: &Isometry3<f64>,
+    rng: &mut dyn Rng,
+) -> Option<Isometry3<f64>> {
+    let space = m.objects().get(held.object.index())?;
+    let z = m.surface(surface)?.height() + m.movable(held.object)?.half_height_m;
+    let yaw = if space.is_round() {
+        rng.random_range(-std::f64::consts::PI..std::f64::consts::PI)
+    } else {
+        target.rotation.euler_angles().2
+    };
+    Some(upright(Vector3::new(target.translation.x, target.translation.y, z), yaw))
+}
+
+fn way_of<M: Manipulator>(
+    m: &Tabletop<M>,
+    q: &Configuration<M::Joints>,
+    at_place: &Isometry3<f64>,
+    direction: &Vector3<f64>,
+) -> Option<Way<M::Joints>> {
+    let out = line::follow(m, &q.base, &q.arm, at_place, &(-direction * m.settings().place.approach_m));
+    if out.share < m.settings().least_line_share {
+        return None;
+    }
+    let down = out.arms.iter().rev().copied().chain([q.arm]).collect();
+    Some(Way { base: q.base, down })
+}
+
+fn assemble<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    held: &Held,
+    surface: SurfaceId,
+    way: &Way<M::Joints>,
+    rng: &mut dyn Rng,
+) -> Result<Instances<Tabletop<M>>, Infeasible> {
+    let mut chain = Chain::at(from);
+    let (first, rest) = way.down.split_first().ok_or(Infeasible::Unreachable)?;
+    let base = way.base;
+    travel(m, &mut chain, &Configuration { base, arm: *first }, from.mode.gap_m(), rng);
+
+    let gap_m = m.settings().place.release_gap_m.max(from.mode.gap_m());
+    let after = chain.end.mode.released_on(surface, gap_m).ok_or(Infeasible::NoGrasp)?;
+    let waypoints: Vec<_> =
+        rest.iter().map(|arm| Waypoint { robot: Configuration { base, arm: *arm }, pushed: 0.0 }).collect();
+    let during = chain.end.mode.clone();
+    let motion = ArmMotion::new(m, &chain.end, &waypoints, Carried::Held(*held), during, after);
+    let instance = Instance {
+        label: label::PLACE,
+        motion: Box::new(motion),
+        contacts: Contacts {
+            fingers: Some((held.object, TouchReason::Grasp)),
+            support: Some((held.object, surface)),
+        },
+        moves: ComponentSet::ROBOT.with(ComponentId::Object(held.object)),
+        object: Some(held.object),
+        reversible: false,
+    };
+    chain.push(m, instance);
+    retreat(m, &mut chain)?;
+    chain.finish()
+}

@@ -1,0 +1,171 @@
+//! Pushing a round object along the ray through its centre.
+
+use darrt_core::motion::Instance;
+use darrt_core::primitive::{Infeasible, Instances};
+use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
+use nalgebra::{Isometry3, Point2, Vector3};
+use rand::{Rng, RngExt};
+
+use super::retreat::retreat;
+use super::stance::stance;
+use super::travel::travel;
+use super::{Chain, label, line};
+use crate::arm_motion::{ArmMotion, Carried, Waypoint};
+use crate::contact::{HandStance, RimContact};
+use crate::manipulator::{Configuration, Hand, Manipulator};
+use crate::mode::{Contacts, TouchReason};
+use crate::push::edge_stop::{EdgeStop, NoPush, PushEnd};
+use crate::tabletop::{Tabletop, TabletopState};
+
+/// A push that reaches less than this far, or than its whole length, is not worth the approach; metres.
+const LEAST_PUSH_M: f64 = 0.02;
+
+/// The arm's way of one push: down behind the object, to the contact, along the push.
+struct Way<J> {
+    base: [f64; 3],
+    /// From high above the standoff point down to it.
+    down: Vec<J>,
+    /// At the contact.
+    contact: J,
+    /// Along the push at equal steps.
+    along: Vec<J>,
+    /// How much of the push the arm reaches.
+    share: f64,
+}
+
+/// Retreat, transit to the pushing pose, straight down behind the object, and the push: to the object's target or, where
+/// that lies off the support, to the edge.
+///
+/// # Errors
+/// [`Infeasible::NoContact`] for an object that cannot be pushed, [`Infeasible::OffSupport`] if the way leaves its
+/// support, [`Infeasible::NoProgress`] if it is already as near as a push can bring it, [`Infeasible::Unreachable`].
+pub fn push<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    object: ObjectId,
+    target: &Isometry3<f64>,
+    rng: &mut dyn Rng,
+) -> Result<Instances<Tabletop<M>>, Infeasible> {
+    let settings = &m.settings().push;
+    let movable = m.movable(object).filter(|o| o.is_pushable).ok_or(Infeasible::NoContact)?;
+    let radius = movable.round_radius_m.ok_or(Infeasible::NoContact)?;
+    let surface = from.mode.support_of(object).and_then(|s| m.surface(s)).ok_or(Infeasible::OffSupport)?;
+    let pose = from.object(object).ok_or(Infeasible::NoContact)?;
+
+    let end = end_of_push(m, surface, pose, target, rng)?;
+    let hand = m.manipulator().hand();
+    let contact = RimContact::new(radius, settings.gap_m, hand.tip_half_width_m()).map_err(|_| Infeasible::NoContact)?;
+    let height = surface.height() + settings.fingertip_clearance_m + hand.tip_beyond_tool_m(settings.gap_m);
+    let twin = HandStance { twin: rng.random_bool(0.5), ..HandStance::default() };
+    let center = Point2::new(pose.translation.x, pose.translation.y);
+    let at_contact =
+        contact.world_from_tool(&center, &end.direction, height, &twin).map_err(|_| Infeasible::NoContact)?;
+
+    let way = stance(m, from, &at_contact, rng, |q| way_of(m, q, &at_contact, &end)).ok_or(Infeasible::Unreachable)?;
+    assemble(m, from, object, pose, &end, &way, rng)
+}
+
+fn end_of_push<M: Manipulator>(
+    m: &Tabletop<M>,
+    surface: &darrt_geom::support::SupportSurface,
+    pose: &Isometry3<f64>,
+    target: &Isometry3<f64>,
+    rng: &mut dyn Rng,
+) -> Result<PushEnd, Infeasible> {
+    let settings = &m.settings().push;
+    let [least, most] = settings.edge_distance_m;
+    let edge_distance = if least < most { rng.random_range(least..=most) } else { least };
+    let stop = EdgeStop { rule: settings.edge_rule, target_margin: least, edge_distance };
+    let flat = |p: &Isometry3<f64>| Point2::new(p.translation.x, p.translation.y);
+    stop.end_of_push(surface, &flat(pose), &flat(target)).map_err(|why| match why {
+        NoPush::NothingToDo => Infeasible::NoProgress,
+        _ => Infeasible::OffSupport,
+    })
+}
+
+/// The arm's way from a configuration at the contact, if it reaches far enough.
+fn way_of<M: Manipulator>(
+    m: &Tabletop<M>,
+    q: &Configuration<M::Joints>,
+    at_contact: &Isometry3<f64>,
+    end: &PushEnd,
+) -> Option<Way<M::Joints>> {
+    let settings = &m.settings().push;
+    let ahead = Vector3::new(end.direction.x, end.direction.y, 0.0);
+    // The first step decides most often, so it is tried before anything else.
+    let along = line::follow(m, &q.base, &q.arm, at_contact, &(ahead * end.length));
+    if along.share * end.length < LEAST_PUSH_M.min(end.length) {
+        return None;
+    }
+    let back = line::follow(m, &q.base, &q.arm, at_contact, &(-ahead * settings.standoff_m));
+    let standoff = *back.arms.last().filter(|_| back.share >= 1.0)?;
+    let mut behind = *at_contact;
+    behind.translation.vector -= ahead * settings.standoff_m;
+    let up = line::follow(m, &q.base, &standoff, &behind, &(Vector3::z() * settings.approach_m));
+    if up.share < m.settings().least_line_share {
+        return None;
+    }
+    let down = up.arms.iter().rev().copied().chain([standoff]).collect();
+    Some(Way { base: q.base, down, contact: q.arm, along: along.arms, share: along.share })
+}
+
+fn assemble<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    object: ObjectId,
+    pose: &Isometry3<f64>,
+    end: &PushEnd,
+    way: &Way<M::Joints>,
+    rng: &mut dyn Rng,
+) -> Result<Instances<Tabletop<M>>, Infeasible> {
+    let mut chain = Chain::at(from);
+    retreat(m, &mut chain)?;
+    approach(m, &mut chain, object, way.base, &way.down, m.settings().push.gap_m, Contacts::default(), rng)?;
+
+    let robot = |arm: &M::Joints| Configuration { base: way.base, arm: *arm };
+    let steps = way.along.len().max(1) as f64;
+    let contact = Waypoint { robot: robot(&way.contact), pushed: 0.0 };
+    let along = way.along.iter().zip(1_u32..);
+    let waypoints: Vec<_> = std::iter::once(contact)
+        .chain(along.map(|(arm, i)| Waypoint { robot: robot(arm), pushed: f64::from(i) / steps }))
+        .collect();
+    let mut to = *pose;
+    to.translation.x += end.direction.x * end.length * way.share;
+    to.translation.y += end.direction.y * end.length * way.share;
+    let mode = chain.end.mode.clone();
+    let motion = ArmMotion::new(m, &chain.end, &waypoints, Carried::Pushed(object, to), mode.clone(), mode);
+    let instance = Instance {
+        label: label::PUSH,
+        motion: Box::new(motion),
+        contacts: Contacts { fingers: Some((object, TouchReason::Push)), support: None },
+        moves: ComponentSet::ROBOT.with(ComponentId::Object(object)),
+        object: Some(object),
+        reversible: false,
+    };
+    chain.push(m, instance);
+    chain.finish()
+}
+
+/// Travel to the first of `arms`, then straight on through the others: the hand comes to stand at `object`.
+#[expect(clippy::too_many_arguments, reason = "the approach is one motion with these independent facts")]
+pub(super) fn approach<M: Manipulator>(
+    m: &Tabletop<M>,
+    chain: &mut Chain<M>,
+    object: ObjectId,
+    base: [f64; 3],
+    arms: &[M::Joints],
+    gap_m: f64,
+    contacts: Contacts,
+    rng: &mut dyn Rng,
+) -> Result<(), Infeasible> {
+    let (first, rest) = arms.split_first().ok_or(Infeasible::Unreachable)?;
+    travel(m, chain, &Configuration { base, arm: *first }, gap_m, rng);
+    let mode = chain.end.mode.opened_to(gap_m).and_then(|mode| mode.engaged_with(object)).ok_or(Infeasible::NoContact)?;
+    let waypoints: Vec<_> =
+        rest.iter().map(|arm| Waypoint { robot: Configuration { base, arm: *arm }, pushed: 0.0 }).collect();
+    let mut instance =
+        super::travel::carry(m, chain, &waypoints, &mode, label::STRAIGHT_LINE_ARM_TRANSIT, contacts);
+    instance.object = Some(object);
+    chain.push(m, instance);
+    Ok(())
+}

@@ -1,0 +1,131 @@
+//! Goals for table-top problems: where objects shall be, and whether the hand has let go of them.
+
+use darrt_core::domain::Domain;
+use darrt_core::goal::Goal;
+use darrt_core::partial::PartialState;
+use darrt_core::space::so2::turn;
+use darrt_core::state::ObjectId;
+use nalgebra::{Isometry3, Point2, Vector3};
+use rand::{Rng, RngExt};
+
+use crate::manipulator::Manipulator;
+use crate::mode::SurfaceId;
+use crate::object_space::upright;
+use crate::tabletop::{Tabletop, TabletopState};
+
+/// Whether the object must be in the hand at the end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Grip {
+    /// It rests and the hand has retreated from it.
+    Released,
+    /// The hand holds it.
+    Held,
+    /// Either.
+    Any,
+}
+
+/// Where an object shall be.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Whereabouts {
+    /// Its centre within the tolerance of this point, upright.
+    At(Vector3<f64>),
+    /// Standing on a surface with its centre in the rectangle between two corners (world x, y).
+    Within {
+        /// The surface.
+        surface: SurfaceId,
+        /// Least x and y.
+        min: Point2<f64>,
+        /// Largest x and y.
+        max: Point2<f64>,
+    },
+}
+
+/// The goal for one object.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObjectGoal {
+    /// Which object.
+    pub object: ObjectId,
+    /// Where.
+    pub whereabouts: Whereabouts,
+    /// How far its centre may be off in x and y, and in z, metres.
+    pub tolerance_m: f64,
+    /// Wanted yaw and its tolerance, radians; `None`: free.
+    pub yaw: Option<(f64, f64)>,
+    /// In the hand or not.
+    pub grip: Grip,
+}
+
+/// How far an object that should be upright may lean, radians.
+const UPRIGHT_TOLERANCE_RAD: f64 = 0.01;
+
+impl ObjectGoal {
+    /// Is this goal met?
+    pub fn is_met<M: Manipulator>(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> bool {
+        let Some(pose) = state.object(self.object) else { return false };
+        let held = state.mode.held().is_some_and(|h| h.object == self.object);
+        let resting = state.mode.support_of(self.object);
+        let grip = match self.grip {
+            Grip::Released => resting.is_some() && state.mode.engaged() != Some(self.object),
+            Grip::Held => held,
+            Grip::Any => true,
+        };
+        let is_there = match &self.whereabouts {
+            Whereabouts::At(place) => (pose.translation.vector - place).norm() <= self.tolerance_m,
+            Whereabouts::Within { surface, min, max } => {
+                let (x, y) = (pose.translation.x, pose.translation.y);
+                resting == Some(*surface) && (min.x..=max.x).contains(&x) && (min.y..=max.y).contains(&y)
+            }
+        };
+        let up = pose.rotation * Vector3::z();
+        let yaw_ok =
+            self.yaw.is_none_or(|(yaw, tolerance)| turn(pose.rotation.euler_angles().2, yaw).abs() <= tolerance);
+        let _ = m;
+        grip && is_there && yaw_ok && up.angle(&Vector3::z()) <= UPRIGHT_TOLERANCE_RAD
+    }
+
+    /// A pose that meets it.
+    fn sample<M: Manipulator>(&self, m: &Tabletop<M>, rng: &mut dyn Rng) -> Option<Isometry3<f64>> {
+        let yaw = match self.yaw {
+            Some((yaw, _)) => yaw,
+            None => rng.random_range(-std::f64::consts::PI..std::f64::consts::PI),
+        };
+        match &self.whereabouts {
+            Whereabouts::At(place) => Some(upright(*place, yaw)),
+            Whereabouts::Within { surface, min, max } => {
+                let at = Point2::new(rng.random_range(min.x..=max.x), rng.random_range(min.y..=max.y));
+                Some(m.objects().get(self.object.index())?.standing(m.surface(*surface)?, &at, yaw))
+            }
+        }
+    }
+}
+
+/// Every group of alternatives must have one that is met.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TabletopGoal {
+    groups: Vec<Vec<ObjectGoal>>,
+}
+
+impl TabletopGoal {
+    /// The conjunction of `groups`, each a list of alternatives.
+    pub fn new(groups: Vec<Vec<ObjectGoal>>) -> Self {
+        Self { groups }
+    }
+}
+
+impl<M: Manipulator> Goal<Tabletop<M>> for TabletopGoal {
+    fn is_satisfied(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> bool {
+        self.groups.iter().all(|alternatives| alternatives.iter().any(|goal| goal.is_met(m, state)))
+    }
+
+    fn sample(&self, m: &Tabletop<M>, rng: &mut dyn Rng) -> Option<PartialState<Tabletop<M>>> {
+        let mut target = PartialState::anywhere(m);
+        for alternatives in &self.groups {
+            if alternatives.is_empty() {
+                return None;
+            }
+            let goal = alternatives.get(rng.random_range(0..alternatives.len()))?;
+            target = target.with_object(goal.object, goal.sample(m, rng)?);
+        }
+        Some(target)
+    }
+}

@@ -1,0 +1,217 @@
+use super::*;
+use nalgebra::{Isometry3, Matrix3};
+use proptest::prelude::*;
+
+fn plate() -> RimGrasps {
+    RimGrasps::new(0.14, 0.02, Grip::default(), RimOptions::default()).unwrap()
+}
+
+fn surface(corners: &[(f64, f64)]) -> SupportSurface {
+    let corners: Vec<_> = corners.iter().map(|(x, y)| Point2::new(*x, *y)).collect();
+    SupportSurface::new("table", &corners, 0.75).unwrap()
+}
+
+/// A square table whose corner at the origin faces +x +y.
+fn corner() -> SupportSurface {
+    surface(&[(-1.0, -1.0), (0.0, -1.0), (0.0, 0.0), (-1.0, 0.0)])
+}
+
+/// One configuration that an independent planner script checked against inverse kinematics and collisions.
+struct Verified {
+    /// Bottom centre of the plate.
+    plate: [f64; 3],
+    azimuth_deg: f64,
+    tilt_deg: f64,
+    tool_position: [f64; 3],
+    /// Rows of the tool's rotation matrix.
+    tool_rows: [[f64; 3]; 3],
+}
+
+const C30: f64 = 0.866_025;
+const C45: f64 = std::f64::consts::FRAC_1_SQRT_2;
+const RIGHT: ([f64; 3], f64, [f64; 3]) = ([-0.2, -0.53, 0.75], -90.0, [-0.2, -0.658, 0.76]);
+const NEAR: ([f64; 3], f64, [f64; 3]) = ([-0.38, -0.12, 0.75], 180.0, [-0.508, -0.12, 0.76]);
+const LEFT: ([f64; 3], f64, [f64; 3]) = ([-0.143, 0.533, 0.75], 90.0, [-0.143, 0.661, 0.76]);
+const PLACE: ([f64; 3], f64, [f64; 3]) = ([-2.165, -1.115, 1.0], 0.0, [-2.037, -1.115, 1.01]);
+
+/// Eleven picks and places: every edge at tilts 0, 30, 45 and the two places.
+fn verified() -> Vec<Verified> {
+    let row = |(plate, azimuth_deg, tool_position), tilt_deg, tool_rows| Verified {
+        plate,
+        azimuth_deg,
+        tilt_deg,
+        tool_position,
+        tool_rows,
+    };
+    vec![
+        row(RIGHT, 0.0, [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]),
+        row(RIGHT, 30.0, [[0.0, 0.0, -1.0], [C30, -0.5, 0.0], [-0.5, -C30, 0.0]]),
+        row(RIGHT, 45.0, [[0.0, 0.0, -1.0], [C45, -C45, 0.0], [-C45, -C45, 0.0]]),
+        row(NEAR, 0.0, [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
+        row(NEAR, 30.0, [[C30, -0.5, 0.0], [0.0, 0.0, 1.0], [-0.5, -C30, 0.0]]),
+        row(NEAR, 45.0, [[C45, -C45, 0.0], [0.0, 0.0, 1.0], [-C45, -C45, 0.0]]),
+        row(LEFT, 0.0, [[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]),
+        row(LEFT, 30.0, [[0.0, 0.0, 1.0], [-C30, 0.5, 0.0], [-0.5, -C30, 0.0]]),
+        row(LEFT, 45.0, [[0.0, 0.0, 1.0], [-C45, C45, 0.0], [-C45, -C45, 0.0]]),
+        row(PLACE, 30.0, [[-C30, 0.5, 0.0], [0.0, 0.0, -1.0], [-0.5, -C30, 0.0]]),
+        row(PLACE, 45.0, [[-C45, C45, 0.0], [0.0, 0.0, -1.0], [-C45, -C45, 0.0]]),
+    ]
+}
+
+#[test]
+fn verified_picks_and_places_are_reproduced() {
+    for case in verified() {
+        let [x, y, bottom] = case.plate;
+        let world_from_plate = Isometry3::translation(x, y, bottom + 0.01);
+        let grasp = plate().grasp(case.azimuth_deg.to_radians(), case.tilt_deg.to_radians(), false);
+        let tool = grasp.world_from_tool(&world_from_plate);
+        let [tx, ty, tz] = case.tool_position;
+        assert!((tool.translation.vector - Vector3::new(tx, ty, tz)).norm() < 1e-9);
+        let [a, b, c] = case.tool_rows;
+        let expected = Matrix3::from_rows(&[a.into(), b.into(), c.into()]);
+        let found = tool.rotation.to_rotation_matrix();
+        assert!((found.matrix() - expected).norm() < 2e-6, "{found}");
+    }
+}
+
+#[test]
+fn the_wrist_stands_outside_and_the_fingertips_end_inside_the_rim() {
+    let grasp = plate().grasp(0.4, 0.0, true);
+    // 0.18 from wrist to tool origin, 0.018 from there to the fingertips.
+    let wrist = grasp.object_from_tool * nalgebra::Point3::new(-0.18, 0.0, 0.0);
+    assert!((wrist.coords.norm() - 0.308).abs() < 1e-12);
+    let tip = grasp.object_from_tool * nalgebra::Point3::new(0.018, 0.0, 0.0);
+    assert!((tip.coords.norm() - 0.110).abs() < 1e-12);
+    assert_eq!(grasp.closed_gap_m, 0.02);
+}
+
+#[test]
+fn the_grid_has_every_azimuth_tilt_and_roll() {
+    assert_eq!(plate().grid().len(), 24 * 3 * 2);
+}
+
+#[test]
+fn unusable_options_are_refused() {
+    let with = |change: fn(&mut RimOptions)| {
+        let mut options = RimOptions::default();
+        change(&mut options);
+        RimGrasps::new(0.14, 0.02, Grip::default(), options)
+    };
+    assert!(with(|_| ()).is_ok());
+    assert!(with(|o| o.insertion = 0.2).is_err());
+    assert!(with(|o| o.grid_tilts.clear()).is_err());
+    assert!(with(|o| o.grid_tilts.push(1.0)).is_err());
+    assert!(with(|o| o.grid_azimuths = 0).is_err());
+    assert!(with(|o| o.max_tilt = f64::NAN).is_err());
+    assert!(with(|o| o.min_tilt = 1.0).is_err());
+    let thick = RimGrasps::new(0.14, 0.06, Grip::default(), RimOptions::default());
+    assert!(thick.is_err());
+}
+
+#[test]
+fn a_level_hand_needs_an_overhang_of_the_insertion() {
+    // Centre a inside the edge x = 0, azimuth 0: graspable iff 0.14 - a >= insertion + clearance.
+    for (insertion, clearance) in [(0.0301, 0.0), (0.0291, 0.0), (0.030, 0.01)] {
+        for millimetres in 10..139 {
+            let a = f64::from(millimetres) * 1e-3 + 0.000_05;
+            let center = Point2::new(-a, -0.5);
+            let found = rim_is_graspable(&corner(), &center, 0.14, 0.0, insertion, clearance);
+            assert_eq!(found, 0.14 - a >= insertion + clearance, "a {a}");
+        }
+    }
+    // Exactly at the limit of the planner's rule.
+    let limit = Point2::new(-0.10, -0.5);
+    assert!(rim_is_graspable(&corner(), &limit, 0.14, 0.0, 0.03, 0.01));
+}
+
+#[test]
+fn a_plate_well_inside_cannot_be_grasped_at_all() {
+    for azimuth in azimuths(48) {
+        let center = Point2::new(-0.5, -0.5);
+        assert!(!rim_is_graspable(&corner(), &center, 0.14, azimuth, 0.03, 0.0));
+    }
+}
+
+#[test]
+fn level_azimuths_at_a_table_corner() {
+    // Centre a inside both edges; the azimuths (7.5 degree steps, from -52.5) at which a level hand of
+    // half width 0.0112 with its fingertips 0.0291 in (gap 0.03) is beside the table.
+    for (a, free) in [
+        (0.090, &[-30.0, -22.5, -15.0, -7.5, 0.0, 7.5, 15.0, 22.5, 30.0][..]),
+        (0.100, &[-15.0, -7.5, 0.0, 7.5, 15.0][..]),
+        (0.110, &[0.0][..]),
+        (0.115, &[][..]),
+    ] {
+        let center = Point2::new(-a, -a);
+        for step in -7..=6 {
+            let degrees = 7.5 * f64::from(step);
+            for (azimuth, name) in [(degrees, "+x"), (90.0 - degrees, "+y")] {
+                let azimuth = f64::to_radians(azimuth);
+                let gap = fingertip_edge_distance(&corner(), &center, 0.14, azimuth, 0.0291, 0.0112);
+                assert_eq!(gap.is_some(), free.contains(&degrees), "{a} {degrees} {name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_notch_in_the_table_must_be_wide_enough() {
+    let notched = |half: f64| {
+        surface(&[
+            (-1.0, -1.0),
+            (0.0, -1.0),
+            (0.0, -half),
+            (-0.2, -half),
+            (-0.2, half),
+            (0.0, half),
+            (0.0, 1.0),
+            (-1.0, 1.0),
+        ])
+    };
+    let gap = |half, width| fingertip_edge_distance(&notched(half), &Point2::new(-0.25, 0.0), 0.14, 0.0, 0.03, width);
+    assert!((gap(0.05, 0.0112).unwrap() - 0.0388).abs() < 1e-9);
+    assert!(gap(0.01, 0.0112).is_none());
+    // A post narrower than a fingertip is still in the way.
+    let post = surface(&[(0.12, -0.001), (0.122, -0.001), (0.122, 0.001), (0.12, 0.001)]);
+    let blocked = fingertip_edge_distance(&post, &Point2::origin(), 0.14, 0.0, 0.03, 0.0112);
+    assert_eq!(blocked, None);
+}
+
+#[test]
+fn force_closure_and_holding_force() {
+    for (mu, degrees) in [(0.5, 26.6), (0.8, 38.7)] {
+        let friction = Friction::new(mu).unwrap();
+        let hold = |tilt: f64| rim_hold(tilt.to_radians(), friction, 0.5, 0.125, 0.03).unwrap();
+        assert!((hold(0.0).tilt_limit.to_degrees() - degrees).abs() < 0.05);
+        assert!(hold(degrees - 0.2).force_closure && hold(-degrees + 0.2).force_closure);
+        assert!(!hold(degrees + 0.2).force_closure);
+        assert!((hold(0.0).moment - 0.61).abs() < 5e-3);
+        assert!((hold(0.0).grip_force - 41.0).abs() < 0.5);
+    }
+    assert!(rim_hold(0.0, Friction::NONE, 0.0, 0.125, 0.03).is_err());
+}
+
+proptest! {
+    #[test]
+    fn fingertip_distance_agrees_with_sampling(
+        x in -0.5..0.2_f64, y in -0.5..0.2_f64, azimuth in -3.2..3.2_f64, half_width in 0.0..0.03_f64,
+    ) {
+        let (table, center) = (corner(), Point2::new(x, y));
+        let gap = fingertip_edge_distance(&table, &center, 0.14, azimuth, 0.03, half_width);
+        let outward = Vector2::new(azimuth.cos(), azimuth.sin());
+        let aside = Vector2::new(-outward.y, outward.x);
+        let mut sampled = f64::INFINITY;
+        for i in 0..=30 {
+            for j in -15..=15 {
+                let reach = 0.11 + 0.03 * f64::from(i) / 30.0;
+                let point = center + reach * outward + half_width * f64::from(j) / 15.0 * aside;
+                sampled = sampled.min(-table.depth(&point));
+            }
+        }
+        match gap {
+            Some(gap) => prop_assert!(gap <= sampled + 1e-9 && gap > sampled - 0.003),
+            // Touching somewhere between the samples.
+            None => prop_assert!(sampled < 0.003),
+        }
+    }
+}

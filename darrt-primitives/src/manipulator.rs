@@ -1,0 +1,131 @@
+//! What a robot offers to the primitives: a holonomic base with one arm and a two-finger gripper.
+//!
+//! A new robot implements [`Manipulator`]; everything else in this crate works through it.
+
+use std::fmt::Debug;
+
+use darrt_geom::body::Body;
+use nalgebra::Isometry3;
+use rand::Rng;
+
+use crate::kinematics::JointLimit;
+
+/// The values of an arm's joints: any fixed-size array of `f64`.
+pub trait JointVector: AsRef<[f64]> + AsMut<[f64]> + Copy + PartialEq + Debug + Send + Sync + 'static {
+    /// How many joints.
+    const COUNT: usize;
+
+    /// All joints at zero.
+    fn zeros() -> Self;
+}
+
+impl<const N: usize> JointVector for [f64; N] {
+    const COUNT: usize = N;
+
+    fn zeros() -> Self {
+        [0.0; N]
+    }
+}
+
+/// Configuration of base and arm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Configuration<J> {
+    /// `[x, y, yaw]` of the base in the world, metres and radians.
+    pub base: [f64; 3],
+    /// Joint values in radians (turning) or metres (sliding).
+    pub arm: J,
+}
+
+/// What carries a link along.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LinkGroup {
+    /// Rigid to the base: base, torso, head, a parked arm.
+    Base,
+    /// Moved by the joints of the planned arm.
+    Arm,
+    /// A finger of the planned arm: also moved by the gripper, and allowed to touch what it manipulates.
+    Finger,
+}
+
+/// One rigid link with its shape.
+#[derive(Debug, Clone)]
+pub struct RobotLink {
+    /// The shape, in the link's frame; its name is the link's.
+    pub body: Body,
+    /// What moves it.
+    pub group: LinkGroup,
+}
+
+/// The facts about a two-finger gripper that contacts and grasps need. Tool frame: x forward out of the hand, y the
+/// finger opening axis, z the finger width axis.
+pub trait Hand: Send + Sync {
+    /// The widest gap between the pads, metres.
+    fn max_gap_m(&self) -> f64;
+
+    /// How far the fingertips reach beyond the tool frame along its x axis at this gap, metres.
+    fn tip_beyond_tool_m(&self, gap_m: f64) -> f64;
+
+    /// Half the width of a fingertip along the tool's z axis, metres.
+    fn tip_half_width_m(&self) -> f64;
+}
+
+/// A mobile manipulator.
+///
+/// # Laws
+/// - `world_from_tool` of every configuration returned by `inverse` or `inverse_near` is the pose asked for (1e-9), and
+///   its joints lie within [`Manipulator::limits`].
+/// - No point of the robot moves farther than [`Manipulator::travel_m`] while base and arm move on the straight line
+///   between two configurations.
+/// - `link_poses` follows `world_from_tool`: finger links are rigid to the tool for a constant gap.
+pub trait Manipulator: Send + Sync + 'static {
+    /// The arm's joint vector.
+    type Joints: JointVector;
+
+    /// The gripper.
+    fn hand(&self) -> &dyn Hand;
+
+    /// Limits of the arm's joints; an unlimited joint is a continuous one, whose values lie in `(-pi, pi]`.
+    fn limits(&self) -> &[JointLimit];
+
+    /// Pose of the tool frame in the world.
+    fn world_from_tool(&self, q: &Configuration<Self::Joints>) -> Isometry3<f64>;
+
+    /// Some arm configuration that brings the tool to `world_from_tool` from this base; redundancy is drawn from `rng`.
+    /// `None` if there is none within the limits (or none was found).
+    fn inverse(&self, base: &[f64; 3], world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> Option<Self::Joints>;
+
+    /// The arm configuration near `near` that brings the tool to `world_from_tool`: for following a line in small steps.
+    fn inverse_near(
+        &self,
+        base: &[f64; 3],
+        world_from_tool: &Isometry3<f64>,
+        near: &Self::Joints,
+    ) -> Option<Self::Joints>;
+
+    /// A base pose from which the tool may reach `world_from_tool`, drawn at random; obstacles are ignored.
+    fn base_for(&self, world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3];
+
+    /// Can the tool possibly reach `world_from_tool` from this base? A cheap necessary condition.
+    fn may_reach(&self, base: &[f64; 3], world_from_tool: &Isometry3<f64>) -> bool;
+
+    /// All links, in a fixed order.
+    fn links(&self) -> &[RobotLink];
+
+    /// Pairs of links (indices into [`Manipulator::links`]) that can collide and must be checked.
+    fn self_pairs(&self) -> &[(usize, usize)];
+
+    /// Writes the world pose of every link, in the order of [`Manipulator::links`]. `out` has as many places.
+    fn link_poses(&self, q: &Configuration<Self::Joints>, gap_m: f64, out: &mut [Isometry3<f64>]);
+
+    /// Metres: bound on the travel of any point of the robot, and of a held object that reaches `held_reach_m` beyond
+    /// the tool frame, on the straight line from `a` to `b`.
+    fn travel_m(
+        &self,
+        a: &Configuration<Self::Joints>,
+        b: &Configuration<Self::Joints>,
+        held_reach_m: f64,
+    ) -> f64;
+
+    /// Typical metres of hand travel per unit of each joint: weights of the arm's distance.
+    fn joint_weights_m(&self) -> &[f64];
+}

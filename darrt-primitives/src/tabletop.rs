@@ -1,0 +1,221 @@
+//! M for table-top manipulation: a mobile manipulator, rigid objects, and the surfaces that carry them.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use darrt_core::domain::Domain;
+use darrt_core::state::{ComponentId, ObjectId, State};
+use darrt_geom::body::Body;
+use darrt_geom::support::SupportSurface;
+use nalgebra::{Isometry3, Point2, Vector3};
+use smallvec::SmallVec;
+
+use crate::arm_space::ArmSpace;
+use crate::grasp::GraspFamily;
+use crate::manipulator::{Configuration, Manipulator};
+use crate::mode::{Contacts, Mode, SurfaceId};
+use crate::object_space::ObjectSpace;
+use crate::push::edge_stop::{EdgeRule, RimReach};
+
+/// A rigid object that can be manipulated, besides its configuration space.
+pub struct Movable {
+    /// Its shape, in a frame at the centre with z up when it stands; its name.
+    pub body: Body,
+    /// Radius about its z axis if it is round, metres.
+    pub round_radius_m: Option<f64>,
+    /// Height of its centre above what it stands on, metres.
+    pub half_height_m: f64,
+    /// Farthest point of its shape from its centre, metres.
+    pub reach_m: f64,
+    /// May it be pushed? Only round objects may.
+    pub is_pushable: bool,
+    /// Where it may stand.
+    pub surfaces: SmallVec<[SurfaceId; 4]>,
+    /// How it may be grasped.
+    pub grasps: Vec<Box<dyn GraspFamily>>,
+    /// What a rim grasp needs of the edge.
+    pub rim: RimReach,
+    /// How far Pick lifts it: at least and at best, metres.
+    pub lift_m: [f64; 2],
+}
+
+impl std::fmt::Debug for Movable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Movable").field("body", &self.body).field("surfaces", &self.surfaces).finish_non_exhaustive()
+    }
+}
+
+/// A support surface and the fixed bodies under it, which what stands on it touches.
+#[derive(Debug, Clone)]
+pub struct Support {
+    /// The polygon.
+    pub surface: SupportSurface,
+    /// Names of the fixed bodies whose top it is.
+    pub bodies: Vec<Arc<str>>,
+}
+
+/// Parameters of Push; metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PushSettings {
+    /// Gap between the fingers.
+    pub gap_m: f64,
+    /// Height of the fingertips above the surface.
+    pub fingertip_clearance_m: f64,
+    /// How far behind the contact the hand comes down.
+    pub standoff_m: f64,
+    /// Length of the way down.
+    pub approach_m: f64,
+    /// Where a push to a place off the support ends.
+    pub edge_rule: EdgeRule,
+    /// How far inside the edge the object's centre stops: least and most.
+    pub edge_distance_m: [f64; 2],
+}
+
+/// Parameters of Place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaceSettings {
+    /// Directions of the last straight motion, unit vectors in the world, pointing down.
+    pub approach_directions: Vec<Vector3<f64>>,
+    /// Length of that motion, metres.
+    pub approach_m: f64,
+    /// How far the fingers open to let go (never less than they are open), metres.
+    pub release_gap_m: f64,
+}
+
+/// Parameters of all actions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ActionSettings<J> {
+    /// Push.
+    pub push: PushSettings,
+    /// Place.
+    pub place: PlaceSettings,
+    /// How far the hand retreats in a straight line, metres.
+    pub retreat_m: f64,
+    /// Part of an approach or retreat that is enough when the arm reaches no farther, in `(0, 1]`.
+    pub least_line_share: f64,
+    /// Distance between inverse-kinematics solutions along a straight line of the hand, metres.
+    pub line_step_m: f64,
+    /// May the base drive with an empty hand, and with an object in it?
+    pub drives: [bool; 2],
+    /// How many base poses are tried for one hand pose (8 in the authors' software).
+    pub base_tries: usize,
+    /// How many grasps of an object are tried.
+    pub grasp_tries: usize,
+    /// Arm postures to travel through; may be empty.
+    pub postures: Vec<J>,
+    /// Gap of the hand where nothing else asks for one, metres.
+    pub travel_gap_m: f64,
+}
+
+/// The domain.
+#[derive(Debug)]
+pub struct Tabletop<M: Manipulator> {
+    manipulator: Arc<M>,
+    robot: ArmSpace<M::Joints>,
+    objects: Vec<ObjectSpace>,
+    movables: Vec<Movable>,
+    supports: Vec<Support>,
+    settings: ActionSettings<M::Joints>,
+}
+
+/// The state of such a domain.
+pub type TabletopState<M> = State<Tabletop<M>>;
+
+impl<M: Manipulator> Tabletop<M> {
+    /// Puts the parts together; `objects[i]` is the configuration space of `movables[i]`.
+    pub fn new(
+        manipulator: Arc<M>,
+        robot: ArmSpace<M::Joints>,
+        objects: Vec<(ObjectSpace, Movable)>,
+        supports: Vec<Support>,
+        settings: ActionSettings<M::Joints>,
+    ) -> Self {
+        let (objects, movables) = objects.into_iter().unzip();
+        Self { manipulator, robot, objects, movables, supports, settings }
+    }
+
+    /// The robot.
+    pub fn manipulator(&self) -> &M {
+        &self.manipulator
+    }
+
+    /// The movable objects, by id.
+    pub fn movables(&self) -> &[Movable] {
+        &self.movables
+    }
+
+    /// One movable object.
+    pub fn movable(&self, id: ObjectId) -> Option<&Movable> {
+        self.movables.get(id.index())
+    }
+
+    /// The support surfaces, by id.
+    pub fn supports(&self) -> &[Support] {
+        &self.supports
+    }
+
+    /// One support surface.
+    pub fn surface(&self, id: SurfaceId) -> Option<&SupportSurface> {
+        self.supports.get(id.index()).map(|s| &s.surface)
+    }
+
+    /// Parameters of the actions.
+    pub fn settings(&self) -> &ActionSettings<M::Joints> {
+        &self.settings
+    }
+
+    /// The surface on which `object` would stand at `pose`: its centre lies over the polygon and its bottom within
+    /// `slack_m` of it. Only surfaces allowed for the object.
+    pub fn surface_under(&self, object: ObjectId, pose: &Isometry3<f64>, slack_m: f64) -> Option<SurfaceId> {
+        let movable = self.movable(object)?;
+        let bottom = pose.translation.z - movable.half_height_m;
+        movable.surfaces.iter().copied().find(|id| {
+            self.surface(*id).is_some_and(|s| {
+                (bottom - s.height()).abs() <= slack_m && s.contains(&Point2::new(pose.translation.x, pose.translation.y))
+            })
+        })
+    }
+
+    /// How far what the hand holds reaches beyond the tool frame, metres; 0 for the empty hand.
+    pub fn held_reach_m(&self, mode: &Mode) -> f64 {
+        let Some(held) = mode.held() else { return 0.0 };
+        held.tool_from_object.translation.vector.norm() + self.movable(held.object).map_or(0.0, |o| o.reach_m)
+    }
+
+    fn tool_point(&self, q: &Configuration<M::Joints>) -> Vector3<f64> {
+        self.manipulator.world_from_tool(q).translation.vector
+    }
+}
+
+impl<M: Manipulator> Domain for Tabletop<M> {
+    type Robot = ArmSpace<M::Joints>;
+    type Object = ObjectSpace;
+    type Mode = Mode;
+    type Contacts = Contacts;
+
+    fn robot(&self) -> &Self::Robot {
+        &self.robot
+    }
+
+    fn objects(&self) -> &[ObjectSpace] {
+        &self.objects
+    }
+
+    fn component_name(&self, component: ComponentId) -> Cow<'_, str> {
+        match component {
+            ComponentId::Robot => Cow::Borrowed("robot"),
+            ComponentId::Object(id) => match self.movable(id) {
+                Some(movable) => Cow::Borrowed(&*movable.body.name),
+                None => Cow::Owned(format!("object {}", id.index())),
+            },
+        }
+    }
+
+    fn reach(&self, robot: &Configuration<M::Joints>, _: ObjectId, at: &Isometry3<f64>) -> f64 {
+        (self.tool_point(robot) - at.translation.vector).norm()
+    }
+
+    fn hop(&self, from: (ObjectId, &Isometry3<f64>), to: (ObjectId, &Isometry3<f64>)) -> f64 {
+        (from.1.translation.vector - to.1.translation.vector).norm()
+    }
+}

@@ -1,0 +1,119 @@
+//! What a partial target asks of a state: the questions that every `useful` is made of.
+
+use darrt_core::domain::Domain;
+use darrt_core::partial::PartialState;
+use darrt_core::space::GroupSet;
+use darrt_core::state::ObjectId;
+use nalgebra::Isometry3;
+use rand::{Rng, RngExt};
+
+use crate::action::place::ON_SURFACE_M;
+use crate::arm_space::{ARM, BASE};
+use crate::manipulator::Manipulator;
+use crate::object_space::OBJECT_TOLERANCE_M;
+use crate::tabletop::{Tabletop, TabletopState};
+
+/// A target for objects and robot of a table-top domain.
+pub type Target<M> = PartialState<Tabletop<M>>;
+
+/// Does the target name this group of the robot, and is the robot elsewhere?
+pub fn asks_for_group<M: Manipulator>(from: &TabletopState<M>, to: &Target<M>, group: GroupSet) -> bool {
+    to.robot().is_some_and(|target| {
+        target.groups.covers(group)
+            && ((group.covers(BASE) && target.config.base != from.robot.base)
+                || (group.covers(ARM) && target.config.arm != from.robot.arm))
+    })
+}
+
+/// Named objects that are not where they should be and that pass `test`.
+pub fn unmet_objects<'a, M: Manipulator>(
+    m: &'a Tabletop<M>,
+    from: &'a TabletopState<M>,
+    to: &'a Target<M>,
+    test: impl Fn(ObjectId, &Isometry3<f64>) -> bool + 'a,
+) -> impl Iterator<Item = (ObjectId, &'a Isometry3<f64>)> + 'a {
+    to.objects().filter(move |(id, target)| !to.is_object_met(m, from, *id) && test(*id, target))
+}
+
+/// One of those, at random.
+pub fn random_unmet_object<'a, M: Manipulator>(
+    m: &'a Tabletop<M>,
+    from: &'a TabletopState<M>,
+    to: &'a Target<M>,
+    test: impl Fn(ObjectId, &Isometry3<f64>) -> bool + Copy + 'a,
+    rng: &mut dyn Rng,
+) -> Option<(ObjectId, &'a Isometry3<f64>)> {
+    let count = unmet_objects(m, from, to, test).count();
+    if count == 0 {
+        return None;
+    }
+    unmet_objects(m, from, to, test).nth(rng.random_range(0..count))
+}
+
+/// Does `object` rest, may it be pushed, and does the target ask for another place in the plane?
+pub fn asks_to_push<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    object: ObjectId,
+    target: &Isometry3<f64>,
+) -> bool {
+    let rests = from.mode.support_of(object).is_some() && m.movable(object).is_some_and(|o| o.is_pushable);
+    let moves = from.object(object).is_some_and(|pose| {
+        (pose.translation.vector.xy() - target.translation.vector.xy()).norm() > OBJECT_TOLERANCE_M
+    });
+    rests && moves
+}
+
+/// Does `object` rest, and can it be grasped at all?
+pub fn asks_to_pick<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>, object: ObjectId) -> bool {
+    from.mode.support_of(object).is_some() && m.movable(object).is_some_and(|o| !o.grasps.is_empty())
+}
+
+/// The pose in the air that the target asks the held object to take, if that is what it asks.
+pub fn held_target_in_air<'a, M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    to: &'a Target<M>,
+) -> Option<&'a Isometry3<f64>> {
+    let held = from.mode.held()?.object;
+    let target = to.object(held)?;
+    let in_air = m.surface_under(held, target, ON_SURFACE_M).is_none();
+    (in_air && !to.is_object_met(m, from, held)).then_some(target)
+}
+
+/// The pose on a surface that the target asks the held object to take, if that is what it asks.
+pub fn held_target_on_surface<'a, M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    to: &'a Target<M>,
+) -> Option<&'a Isometry3<f64>> {
+    let held = from.mode.held()?.object;
+    let target = to.object(held)?;
+    m.surface_under(held, target, ON_SURFACE_M).map(|_| target)
+}
+
+/// Is something held that the target does not name, while another object has to be moved? The hand must be emptied.
+pub fn asks_for_empty_hand<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>, to: &Target<M>) -> bool {
+    let Some(held) = from.mode.held() else { return false };
+    to.object(held.object).is_none() && !to.are_objects_met(m, from)
+}
+
+/// Is something held, are all named objects met and is the held one free to go anywhere?
+pub fn may_carry_along<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>, to: &Target<M>) -> bool {
+    from.mode.held().is_some_and(|held| to.object(held.object).is_none()) && to.are_objects_met(m, from)
+}
+
+/// A random place on a surface on which `object` may stand.
+pub fn random_standing_pose<M: Manipulator>(
+    m: &Tabletop<M>,
+    object: ObjectId,
+    rng: &mut dyn Rng,
+) -> Option<Isometry3<f64>> {
+    let allowed = &m.movable(object)?.surfaces;
+    if allowed.is_empty() {
+        return None;
+    }
+    let surface = m.surface(*allowed.get(rng.random_range(0..allowed.len()))?)?;
+    let at = surface.sample(rng, 0.0)?;
+    Some(m.objects().get(object.index())?.standing(surface, &at, rng.random_range(-3.0..3.0)))
+}
