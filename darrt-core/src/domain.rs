@@ -44,6 +44,23 @@ pub trait Domain: Sized + Send + Sync + 'static {
     /// obstacles ignored. Used by the tour distances of paper section 4.3.
     fn reach(&self, robot: &RobotConfig<Self>, object: ObjectId, at: &ObjectConfig<Self>) -> f64;
 
+    /// Where the robot's working point is, if [`reach_from`](Self::reach_from) wants to know. Computed once per node of
+    /// the tree, because forward kinematics is dearer than everything else in a distance.
+    fn working_point(&self, _robot: &RobotConfig<Self>) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    /// [`reach`](Self::reach), for a robot whose working point is already known. Must give the same number.
+    fn reach_from(
+        &self,
+        _working_point: [f64; 3],
+        robot: &RobotConfig<Self>,
+        object: ObjectId,
+        at: &ObjectConfig<Self>,
+    ) -> f64 {
+        self.reach(robot, object, at)
+    }
+
     /// Metres the working point travels from acting on one object to acting on another.
     fn hop(&self, from: (ObjectId, &ObjectConfig<Self>), to: (ObjectId, &ObjectConfig<Self>)) -> f64;
 }

@@ -13,6 +13,7 @@ use crate::observe::accounts::Bucket;
 use crate::partial::PartialState;
 use crate::path::{Path, PathEnd, Trial, path};
 use crate::problem::Problem;
+use crate::reroute::Reroute;
 use crate::state::State;
 use crate::validity::{Blame, BlockKind};
 
@@ -24,11 +25,14 @@ pub struct ExtendOptions {
     pub spacing_m: f64,
     /// At most this many primitives in one PATH (the authors' software used 100).
     pub max_depth: usize,
+    /// Metres of travel by which a blocked motion is cut shorter than it is free; at least 0. States that almost touch
+    /// what blocked them are the nearest to every target behind it, and nothing can be reached from them.
+    pub back_off_m: f64,
 }
 
 impl Default for ExtendOptions {
     fn default() -> Self {
-        Self { spacing_m: 0.1, max_depth: 20 }
+        Self { spacing_m: 0.1, max_depth: 20, back_off_m: 0.0 }
     }
 }
 
@@ -42,6 +46,7 @@ impl ExtendOptions {
     /// [`Error::Parameter`] for a spacing that is not finite and positive, or a depth of zero.
     pub fn check(&self) -> Result<(), Error> {
         in_range("spacing_m", self.spacing_m, f64::MIN_POSITIVE, f64::MAX, "finite and positive")?;
+        in_range("back_off_m", self.back_off_m, 0.0, f64::MAX, "finite and not negative")?;
         in_range("max_depth", self.max_depth as f64, 1.0, f64::MAX, "at least 1")?;
         Ok(())
     }
@@ -81,13 +86,41 @@ pub fn extend_towards<D: Domain>(
     to: &PartialState<D>,
     rng: &mut dyn Rng,
 ) -> Extension<D> {
+    extend_around(problem, options, None, from, to, rng)
+}
+
+/// [`extend_towards`], looking for a way around where a motion is blocked.
+pub fn extend_around<D: Domain>(
+    problem: &Problem<D>,
+    options: &ExtendOptions,
+    reroute: Option<&dyn Reroute<D>>,
+    from: &State<D>,
+    to: &PartialState<D>,
+    rng: &mut dyn Rng,
+) -> Extension<D> {
     let m = problem.domain();
     let e = path(m, problem.primitives(), from, to, options.max_depth, rng);
+    let mut is_worth_it = None;
     let mut reached = Vec::new();
     let mut blocked: Option<(usize, Blame)> = None;
-    for (index, ((primitive, instance), start)) in e.instances.iter().zip(&e.states).enumerate() {
-        let free = problem.validity().free_prefix(m, instance, start);
-        discretise(m, instance, *primitive, free.fraction, options.spacing_m, start, &mut reached);
+    for index in 0..e.instances.len() {
+        let (Some((primitive, instance)), Some(start)) = (e.instances.get(index), e.states.get(index)) else { break };
+        let (primitive, mut instance) = (*primitive, Arc::clone(instance));
+        let mut free = problem.validity().free_prefix(m, &instance, start);
+        if free.blame.is_some()
+            && let Some(r) = reroute.filter(|r| r.is_free_to_turn(&instance))
+            && *is_worth_it.get_or_insert_with(|| rest_is_valid(problem, r, &e, index))
+            && let Some(around) = r.reroute(m, problem.validity(), &instance, start, rng)
+        {
+            instance = Arc::new(around);
+            free = problem.validity().free_prefix(m, &instance, start);
+        }
+        let kept = if free.blame.is_some() && options.back_off_m > 0.0 {
+            free.fraction - options.back_off_m / instance.motion.length()
+        } else {
+            free.fraction
+        };
+        discretise(m, &instance, primitive, kept, options.spacing_m, start, &mut reached);
         let is_short = free.fraction.is_nan() || free.fraction < 1.0;
         if let Some(blame) = free.blame.or_else(|| is_short.then(unexplained)) {
             blocked = Some((index, blame));
@@ -96,6 +129,22 @@ pub fn extend_towards<D: Domain>(
     }
     let buckets = buckets(&e, blocked.as_ref().map(|(index, blame)| (*index, blame.kind)));
     Extension { reached, is_met: blocked.is_none() && e.end == PathEnd::Met, blame: blocked.map(|(_, b)| b), buckets }
+}
+
+/// How much of a motion that cannot turn aside must be free for the way to it to be worth looking for.
+const WORTH_REACHING: f64 = 0.25;
+
+/// Is what the chain is bound to pass valid: the end of every instance from `index` on, and the beginning of every later
+/// one that cannot turn aside? If not, a way around leads nowhere, and it is dear to find.
+fn rest_is_valid<D: Domain>(problem: &Problem<D>, reroute: &dyn Reroute<D>, e: &Path<D>, index: usize) -> bool {
+    let m = problem.domain();
+    let rest = || e.instances.iter().zip(&e.states).zip(e.states.iter().skip(1)).skip(index);
+    let is_bound = |instance: &Instance<D>| !reroute.is_free_to_turn(instance);
+    rest().filter(|(((_, i), _), _)| !is_bound(i)).all(|(((_, instance), _), end)| {
+        problem.validity().check(m, end, &instance.contacts).is_ok()
+    }) && rest().filter(|(((_, i), _), _)| is_bound(i)).all(|(((_, instance), start), _)| {
+        problem.validity().free_prefix(m, instance, start).fraction >= WORTH_REACHING
+    })
 }
 
 /// What a validity check that stops short without saying why is taken to mean.

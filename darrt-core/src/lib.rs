@@ -33,6 +33,7 @@ pub mod plan;
 pub mod primitive;
 pub mod problem;
 pub mod random;
+pub mod reroute;
 pub mod sample;
 pub mod search;
 pub mod solve;

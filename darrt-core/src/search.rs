@@ -3,12 +3,13 @@
 use crate::budget::Stop;
 use crate::distance::Distance;
 use crate::domain::Domain;
-use crate::extend::{ExtendOptions, Extension, extend_towards};
+use crate::extend::{ExtendOptions, Extension, extend_around};
 use crate::observe::accounts::Accounts;
 use crate::partial::PartialState;
 use crate::plan::Plan;
 use crate::problem::Problem;
 use crate::random::{Purpose, stream};
+use crate::reroute::Reroute;
 use crate::sample::Sampler;
 use crate::state::State;
 use crate::tree::{Edge, NodeId, Tree};
@@ -23,6 +24,11 @@ pub struct Strategy<D: Domain> {
     pub distance: Box<dyn Distance<D>>,
     /// How EXTENDTOWARDS discretises.
     pub extend: ExtendOptions,
+    /// What is tried when a motion is blocked; `None`: the blocked motion is cut short, as in the paper.
+    pub reroute: Option<Box<dyn Reroute<D>>>,
+    /// Metres by which a node counts as farther away after each extension from it; at least 0. Zero is the plain arg min
+    /// of Algorithm 1, which asks the nearest node again and again even where nothing leads on (paper section 6.2).
+    pub try_penalty_m: f64,
 }
 
 impl<D: Domain> std::fmt::Debug for Strategy<D> {
@@ -93,7 +99,7 @@ impl<'p, D: Domain> Darrt<'p, D> {
         let s = self.strategy.sampler.sample(m, self.problem.goal(), draw);
         let t = self.strategy.distance.nearest(m, &self.tree, &s).unwrap_or(Tree::<D>::ROOT);
         let from = self.tree.node(t).map_or(self.problem.start(), |node| &node.state);
-        let extension = extend_towards(self.problem, &self.strategy.extend, from, &s, choose);
+        let extension = extend_around(self.problem, &self.strategy.extend, self.strategy.reroute.as_deref(), from, &s, choose);
         let (is_met, buckets) = (extension.is_met, extension.buckets.clone());
         let step = self.absorb(t, extension);
         self.accounts.count(&buckets, step.added, is_met, step.blame.as_ref());

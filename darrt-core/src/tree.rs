@@ -1,6 +1,6 @@
 //! V and its edges: an arena of states, each with its parent and the instance that led to it.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::domain::Domain;
 use crate::motion::Instance;
@@ -43,6 +43,20 @@ pub struct Node<D: Domain> {
     pub state: State<D>,
     /// How it was reached; `None` for the root.
     pub edge: Option<Edge<D>>,
+    /// Metres added to every distance from here, for the extensions from here that have already been made.
+    pub penalty_m: f64,
+    working_point: OnceLock<[f64; 3]>,
+}
+
+impl<D: Domain> Node<D> {
+    fn new(state: State<D>, edge: Option<Edge<D>>, penalty_m: f64) -> Self {
+        Self { state, edge, penalty_m, working_point: OnceLock::new() }
+    }
+
+    /// The robot's working point, computed when it is first asked for.
+    pub fn working_point(&self, m: &D) -> [f64; 3] {
+        *self.working_point.get_or_init(|| m.working_point(&self.state.robot))
+    }
 }
 
 /// A tree of states rooted at the start.
@@ -57,7 +71,7 @@ impl<D: Domain> Tree<D> {
 
     /// The tree that holds only the start.
     pub fn rooted_at(start: State<D>) -> Self {
-        Self { nodes: vec![Node { state: start, edge: None }] }
+        Self { nodes: vec![Node::new(start, None, 0.0)] }
     }
 
     /// The root.
@@ -66,7 +80,9 @@ impl<D: Domain> Tree<D> {
     /// Adds a node. `None` if the tree is full.
     pub fn add(&mut self, state: State<D>, edge: Edge<D>) -> Option<NodeId> {
         let id = NodeId(u32::try_from(self.nodes.len()).ok()?);
-        self.nodes.push(Node { state, edge: Some(edge) });
+        // A child is no fresh start: what was hard for its parent is mostly hard for it.
+        let penalty_m = self.node(edge.parent).map_or(0.0, |parent| parent.penalty_m);
+        self.nodes.push(Node::new(state, Some(edge), penalty_m));
         Some(id)
     }
 
@@ -74,6 +90,13 @@ impl<D: Domain> Tree<D> {
     pub fn remove_last(&mut self) {
         if self.nodes.len() > 1 {
             self.nodes.pop();
+        }
+    }
+
+    /// Adds `metres` to the penalty of a node.
+    pub fn penalise(&mut self, id: NodeId, metres: f64) {
+        if let Some(node) = self.nodes.get_mut(id.index()) {
+            node.penalty_m += metres;
         }
     }
 

@@ -1,20 +1,23 @@
 //! Partial states, distances, samplers and goals of the core keep their laws on two domains.
 #![cfg(feature = "testing")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test says no more than that it failed")]
 
 use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
 use darrt_core::domain::Domain;
 use darrt_core::goal::{AnyOf, Goal, Reach, Region};
+use darrt_core::laws::motion::component_travel;
 use darrt_core::laws::nearest::tree_of;
 use darrt_core::laws::{
-    SpaceClaims, check_distance, check_domain, check_goal, check_nearest, check_not_above, check_partial,
-    check_sampler, check_sampler_covers,
+    MotionClaims, SpaceClaims, check_distance, check_domain, check_goal, check_motion, check_nearest, check_not_above,
+    check_partial, check_sampler, check_sampler_covers,
 };
+use darrt_core::motion::{Straight, Waypoints};
 use darrt_core::partial::PartialState;
 use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler};
 use darrt_core::state::{ObjectId, State};
-use darrt_core::testing::broken::bench::{Bench, Tag};
+use darrt_core::testing::broken::bench::{Bench, Tag, state};
 use darrt_core::testing::puck::{Mode, Puck, PuckWorld};
-use darrt_core::testing::strategies::{config, parameters, seeds, states, targets};
+use darrt_core::testing::strategies::{config, looks, parameters, seeds, states, targets};
 use proptest::prelude::*;
 
 const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_search.txt");
@@ -37,7 +40,7 @@ macro_rules! on_both_domains {
     )+ };
 }
 
-on_both_domains!(domains, partial_states, distances, nearest_nodes, samplers, goals);
+on_both_domains!(domains, motions, partial_states, distances, nearest_nodes, samplers, goals);
 
 mod checks {
     use super::*;
@@ -47,6 +50,21 @@ mod checks {
         let all = (s.clone(), s.clone(), s, parameters(), parameters(), seeds());
         proptest!(config(48, REGRESSIONS), |((a, b, c, t, u, seed) in all)| {
             check_domain(m, &SpaceClaims::default(), [&a, &b, &c], [t, u], seed)?;
+        });
+    }
+
+    /// Through random states, some twice (a leg without length); from one mode to another and back.
+    pub(super) fn motions<D: Domain>(m: &D, mode: D::Mode) {
+        let way = proptest::collection::vec((states(m, mode), any::<bool>()), 2..6);
+        proptest!(config(96, REGRESSIONS), |(way in way, ts in looks())| {
+            let stops: Vec<_> = way.into_iter().flat_map(|(s, twice)| vec![s; 1 + usize::from(twice)]).collect();
+            let legs: Vec<_> = stops.windows(2).map(|leg| component_travel(m, &leg[0], &leg[1])).collect();
+            let (start, claims) = (stops[0].clone(), MotionClaims::default());
+            let straight = Straight::new(start.clone(), stops[1].robot.clone(), legs[0]);
+            check_motion(m, &straight, &start, &ts, &claims)?;
+            if let Some(motion) = Waypoints::new(stops, &legs, start.mode.clone()) {
+                check_motion(m, &motion, &start, &ts, &claims)?;
+            }
         });
     }
 
@@ -75,7 +93,7 @@ mod checks {
         proptest!(config(48, REGRESSIONS), |(to in targets(m), root in s, others in many)| {
             // Twins of the nodes make ties.
             let twice = others.iter().chain(&others).cloned();
-            let tree = tree_of(root, twice);
+            let tree = tree_of(&root, twice);
             for distance in [&Euclidean as &dyn Distance<D>, &GreedyVisit, &ExactTour] {
                 check_nearest(m, distance, &tree, &to)?;
             }
@@ -103,6 +121,7 @@ mod checks {
         m.robot().sample(&mut stream(0, 0, 0, Purpose::Sample))
     }
 
+    #[allow(clippy::needless_pass_by_value, reason = "all checks here have one signature")]
     pub(super) fn goals<D: Domain>(m: &D, mode: D::Mode) {
         proptest!(config(48, REGRESSIONS), |(a in targets(m), b in targets(m), from in states(m, mode.clone()), seed in seeds())| {
             let wanted = mode.clone();
@@ -116,6 +135,18 @@ mod checks {
             check_goal(m, &region, &from, seed)?;
         });
     }
+}
+
+/// The mode changes at the very beginning, before anything moves: a grasp and then a lift in one motion.
+#[test]
+fn a_first_leg_without_length_keeps_its_mode() {
+    let m = Bench::default();
+    let (open, held) = (state([0.5, 0.0]), State { mode: Tag::new(1), ..state([0.5, 0.0]) });
+    let end = State { mode: Tag::new(2), ..state([1.5, 0.0]) };
+    let motion = Waypoints::new(vec![open.clone(), held.clone(), end.clone()], &[0.0, 1.0], held.mode.clone()).unwrap();
+    check_motion(&m, &motion, &open, &[0.1, 0.5, 0.999], &MotionClaims::default()).unwrap();
+    let last = Waypoints::new(vec![open.clone(), end.clone(), end], &[1.0, 0.0], held.mode).unwrap();
+    check_motion(&m, &last, &open, &[0.1, 0.5, 0.999], &MotionClaims::default()).unwrap();
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! Every stock space keeps every law of its trait, at random and in the corners.
 #![cfg(feature = "testing")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test says no more than that it failed")]
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use darrt_core::laws::{Broken, SpaceClaims, check_component_space, check_covering};
+use darrt_core::laws::{SpaceClaims, check_component_space, check_covering};
 use darrt_core::space::{ComponentSpace, Fixed, Product, RealBox, Se2, Se3, So2};
 use darrt_core::testing::strategies::{config, configs, parameters, seeds};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
@@ -27,9 +28,6 @@ fn check<S: ComponentSpace>(space: &S, corners: &[S::Config]) {
                 }
             }
         }
-        let width = space
-            .distance(a, &space.sample(&mut darrt_core::random::stream(1, 2, 3, darrt_core::random::Purpose::Sample)));
-        let _: Result<(), Broken> = check_covering(space, a, width + 1e-9, 1, 0);
     }
 }
 
@@ -43,7 +41,7 @@ fn real_boxes() {
 }
 
 const ANGLES: [f64; 12] =
-    [0.0, -0.0, 1e-20, -1e-12, FRAC_PI_2, -FRAC_PI_2, PI, -PI, 3.141_592_653_589_79, -3.141_592_653_589_79, 3.0, -3.0];
+    [0.0, -0.0, 1e-20, -1e-12, FRAC_PI_2, -FRAC_PI_2, PI, -PI, PI.next_down(), -PI.next_down(), 3.0, -3.0];
 
 #[test]
 fn circles() {

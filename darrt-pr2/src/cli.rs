@@ -1,9 +1,66 @@
-//! The command line.
+//! The command line of the program `darrt`.
+//!
+//! Results go to the standard output, progress and errors to the standard error. Every command ends in one [`Exit`].
+//!
+//! | question | file |
+//! |---|---|
+//! | which commands and options are there? | [`args`] |
+//! | how did it end? | [`exit`] |
+//! | how are texts and files written? | `output` |
+//! | what does each command do? | `plan`, `check`, `problems`, `show`, `schema` |
+//! | what is seen while it works? | `progress` |
+//! | how are a plan and the planner's counts told? | `steps`, `statistics`, `diagnosis`, `table` |
+
+pub mod args;
+mod check;
+mod diagnosis;
+pub mod exit;
+mod output;
+mod plan;
+mod problems;
+mod progress;
+mod schema;
+mod show;
+mod statistics;
+mod steps;
+mod table;
 
 use std::ffi::OsString;
+use std::io::Write as _;
 use std::process::ExitCode;
 
+use clap::Parser as _;
+
+use args::{Arguments, Command};
+pub use exit::{Exit, Failure};
+use output::Output;
+
 /// Runs the program with these arguments, the program's name first, and says how it ended.
-pub fn run(_arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    ExitCode::FAILURE
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let command = match Arguments::try_parse_from(arguments) {
+        Ok(parsed) => parsed.command,
+        Err(error) => {
+            // Help and version count as success; a reader that went away is no reason to complain.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::BadInput } else { Exit::Solved }.into();
+        }
+    };
+    match dispatch(&command) {
+        Ok(exit) => exit.into(),
+        Err(failure) => {
+            let _ = writeln!(std::io::stderr().lock(), "error: {}", failure.message);
+            failure.exit.into()
+        }
+    }
+}
+
+fn dispatch(command: &Command) -> Result<Exit, Failure> {
+    let mut output = Output::stdout();
+    match command {
+        Command::Plan(options) => plan::run(options, &mut output),
+        Command::Check(options) => check::run(options, &mut output),
+        Command::Problems(options) => problems::run(options, &mut output),
+        Command::Show(options) => show::run(options, &mut output),
+        Command::Schema(options) => schema::run(options, &mut output),
+    }
 }

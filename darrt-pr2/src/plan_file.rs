@@ -3,7 +3,7 @@
 //! | question | file |
 //! |---|---|
 //! | how is a file read without trusting it? | [`read`] |
-//! | how is it written so that it is never half there? | [`write`] |
+//! | how is it written so that it is never half there? | [`mod@write`] |
 //! | which joints does a waypoint list? | [`joints`] |
 //! | what does the published schema say? | [`schema`] |
 //!

@@ -14,6 +14,7 @@ use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler
 use darrt_core::search::Strategy;
 use darrt_core::solve::{Outcome, SolveOptions, solve};
 use darrt_core::verify::{Refusal, Verifier};
+use darrt_primitives::detour::Detour;
 use darrt_primitives::validity::{SceneValidity, ValidityOptions};
 
 use crate::export::Exporter;
@@ -21,6 +22,13 @@ use crate::plan_file::{PlanFile, PlannerFacts};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{DistanceName, PrimitiveName, ProblemFile, SamplerName, Sampling};
 use crate::world::{self, Built, World, WorldState};
+
+/// Bound on the travel of any point of the robot between two nodes of the tree, metres; the hand moves about a third.
+const NODE_SPACING: f64 = 0.3;
+/// See [`ExtendOptions::back_off_m`].
+const BACK_OFF: f64 = 0.15;
+/// See [`Strategy::try_penalty_m`].
+const TRY_PENALTY: f64 = 0.5;
 
 /// What to plan and how; `None` keeps what the problem file says.
 #[derive(Debug, Clone)]
@@ -222,7 +230,13 @@ pub fn strategy(
         DistanceName::ExactTour => Box::new(ExactTour),
     };
     let sampler = Box::new(GoalBiased::new(sampler, sampling.goal_bias)?);
-    Ok(Strategy { sampler, distance, extend: ExtendOptions::default() })
+    Ok(Strategy {
+        sampler,
+        distance,
+        extend: ExtendOptions { spacing_m: NODE_SPACING, back_off_m: BACK_OFF, ..ExtendOptions::default() },
+        reroute: Some(Box::new(Detour::default())),
+        try_penalty_m: TRY_PENALTY,
+    })
 }
 
 /// Every manipulation is made of simpler primitives, which must be allowed too.

@@ -52,7 +52,7 @@ pub struct Proof {
 /// Replays `plan` with the default [`VerifyOptions`].
 ///
 /// # Errors
-/// The first [`Refusal`] found, in the order of time.
+/// The first [`Refusal`] found: step by step, in a step its form and limits first, then its states in the order of time.
 pub fn verify(plan: &PlanFile) -> Result<Proof, Refusal> {
     verify_with(plan, &VerifyOptions::default())
 }
@@ -60,7 +60,7 @@ pub fn verify(plan: &PlanFile) -> Result<Proof, Refusal> {
 /// Replays `plan` at the resolution and with the tolerances of `options`.
 ///
 /// # Errors
-/// The first [`Refusal`] found, in the order of time; also when an option is out of its range.
+/// As [`verify`]; also when an option is out of its range.
 pub fn verify_with(plan: &PlanFile, options: &VerifyOptions) -> Result<Proof, Refusal> {
     if let Some((name, value)) = options.flaw() {
         let text = format!("the verifier's option `{name}` is {value}, which is out of its range");

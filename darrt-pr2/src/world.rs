@@ -35,7 +35,7 @@ const TRAVEL_GAP: f64 = 0.08;
 /// Free distance that a rim grasp keeps between fingertips and edge, metres.
 const RIM_CLEARANCE: f64 = 0.01;
 /// Share of object samples that stand on a surface.
-const SURFACE_SHARE: f64 = 0.6;
+const SURFACE_SHARE: f64 = 0.7;
 
 /// Everything that a problem file says, built.
 #[derive(Debug)]
@@ -80,7 +80,7 @@ pub fn build(problem: &ProblemFile) -> Result<Built, PlanningError> {
 
     let settings = settings(problem, robot.arm().side)?;
     let robot = Arc::new(robot);
-    let world = World::new(robot, space, objects, supports, settings);
+    let world = World::new(robot, space, objects, supports, settings)?;
     let start = State {
         robot: Configuration { base: problem.robot.base, arm },
         objects: geometry.objects.iter().map(|o| o.world_from_object).collect(),
@@ -223,7 +223,7 @@ fn settings(problem: &ProblemFile, side: Side) -> Result<ActionSettings<ArmConfi
         least_line_share: 0.5,
         line_step_m: 0.02,
         drives: [problem.allows(PrimitiveName::BaseTransit), problem.allows(PrimitiveName::BaseRigidTransfer)],
-        base_tries: 8,
+        base_tries: 24,
         grasp_tries: 4,
         postures: postures.collect::<Result<_, PlanningError>>()?,
         travel_gap_m: TRAVEL_GAP,

@@ -8,7 +8,8 @@
 //! | how do objects slide when pushed? | [`push`], [`contact`] |
 //! | how can an object be held? | [`grasp`] |
 //! | how does a wish become motions? | [`action`], [`arm_motion`] |
-//! | what is in the way? | [`validity`] |
+//! | which stances are worth proposing? | [`stance_check`] |
+//! | what is in the way, and is there a way around? | [`validity`], [`detour`] |
 //! | what is asked for, and what is a goal? | [`wish`], [`goal`] |
 //!
 //! Nothing here names a robot.
@@ -17,6 +18,7 @@ pub mod action;
 pub mod arm_motion;
 pub mod arm_space;
 pub mod contact;
+pub mod detour;
 pub mod error;
 pub mod goal;
 pub mod grasp;
@@ -26,5 +28,6 @@ pub mod mode;
 pub mod object_space;
 pub mod push;
 pub mod wish;
+pub mod stance_check;
 pub mod tabletop;
 pub mod validity;

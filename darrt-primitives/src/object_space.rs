@@ -101,6 +101,17 @@ pub fn upright(position: Vector3<f64>, yaw: f64) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(position), UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw))
 }
 
+/// The object's own z axis in the world: the third column of its rotation matrix.
+fn own_axis(pose: &Isometry3<f64>) -> Vector3<f64> {
+    let q = pose.rotation.quaternion();
+    Vector3::new(2.0 * (q.i * q.k + q.w * q.j), 2.0 * (q.j * q.k - q.w * q.i), 1.0 - 2.0 * (q.i * q.i + q.j * q.j))
+}
+
+/// Angle between two unit vectors, from the chord between their ends: exact zero for equal ones, and cheap.
+fn angle_between_axes(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    2.0 * (0.5 * (a - b).norm()).min(1.0).asin()
+}
+
 impl ComponentSpace for ObjectSpace {
     type Config = Isometry3<f64>;
 
@@ -117,7 +128,7 @@ impl ComponentSpace for ObjectSpace {
         let angle = if a.rotation == b.rotation {
             0.0
         } else if self.is_round {
-            (a.rotation * Vector3::z()).angle(&(b.rotation * Vector3::z()))
+            angle_between_axes(&own_axis(a), &own_axis(b))
         } else {
             angle_between(&a.rotation, &b.rotation)
         };

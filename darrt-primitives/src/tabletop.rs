@@ -6,6 +6,7 @@ use std::sync::Arc;
 use darrt_core::domain::Domain;
 use darrt_core::state::{ComponentId, ObjectId, State};
 use darrt_geom::body::Body;
+use darrt_geom::error::GeomError;
 use darrt_geom::support::SupportSurface;
 use nalgebra::{Isometry3, Point2, Vector3};
 use smallvec::SmallVec;
@@ -15,6 +16,7 @@ use crate::grasp::GraspFamily;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Mode, SurfaceId};
 use crate::object_space::ObjectSpace;
+use crate::stance_check::StanceCheck;
 use crate::push::edge_stop::{EdgeRule, RimReach};
 
 /// A rigid object that can be manipulated, besides its configuration space.
@@ -116,22 +118,33 @@ pub struct Tabletop<M: Manipulator> {
     movables: Vec<Movable>,
     supports: Vec<Support>,
     settings: ActionSettings<M::Joints>,
+    stances: StanceCheck,
 }
 
 /// The state of such a domain.
 pub type TabletopState<M> = State<Tabletop<M>>;
 
 impl<M: Manipulator> Tabletop<M> {
-    /// Puts the parts together; `objects[i]` is the configuration space of `movables[i]`.
+    /// Puts the parts together.
+    ///
+    /// # Errors
+    /// [`GeomError`] if a link of the robot has a shape that cannot be checked.
     pub fn new(
         manipulator: Arc<M>,
         robot: ArmSpace<M::Joints>,
         objects: Vec<(ObjectSpace, Movable)>,
         supports: Vec<Support>,
         settings: ActionSettings<M::Joints>,
-    ) -> Self {
+    ) -> Result<Self, GeomError> {
         let (objects, movables) = objects.into_iter().unzip();
-        Self { manipulator, robot, objects, movables, supports, settings }
+        let surfaces: Vec<SupportSurface> = supports.iter().map(|s| s.surface.clone()).collect();
+        let stances = StanceCheck::new(&*manipulator, &surfaces)?;
+        Ok(Self { manipulator, robot, objects, movables, supports, settings, stances })
+    }
+
+    /// The check of stances against the robot itself and the surfaces.
+    pub fn stances(&self) -> &StanceCheck {
+        &self.stances
     }
 
     /// The robot.
@@ -213,6 +226,20 @@ impl<M: Manipulator> Domain for Tabletop<M> {
 
     fn reach(&self, robot: &Configuration<M::Joints>, _: ObjectId, at: &Isometry3<f64>) -> f64 {
         (self.tool_point(robot) - at.translation.vector).norm()
+    }
+
+    fn working_point(&self, robot: &Configuration<M::Joints>) -> [f64; 3] {
+        self.tool_point(robot).into()
+    }
+
+    fn reach_from(
+        &self,
+        working_point: [f64; 3],
+        _: &Configuration<M::Joints>,
+        _: ObjectId,
+        at: &Isometry3<f64>,
+    ) -> f64 {
+        (Vector3::from(working_point) - at.translation.vector).norm()
     }
 
     fn hop(&self, from: (ObjectId, &Isometry3<f64>), to: (ObjectId, &Isometry3<f64>)) -> f64 {

@@ -12,13 +12,14 @@ use std::sync::{Arc, Mutex};
 use darrt_core::domain::Domain;
 use darrt_core::motion::Instance;
 use darrt_core::space::ComponentSpace;
-use darrt_core::state::ObjectId;
+use darrt_core::state::{ComponentId, ObjectId};
 use darrt_core::validity::{Blame, BlockKind, FreePrefix, Validity};
 use darrt_geom::allowed::{AllowedContacts, ContactReason};
 use darrt_geom::body_set::{BodyIndex, BodySet};
 use darrt_geom::collide::{CollisionModel, Hit, Query, Scratch};
 use darrt_geom::error::GeomError;
 use darrt_geom::scene::FixedBody;
+use darrt_geom::shape::Shape;
 use nalgebra::{Isometry3, Point2};
 
 use crate::manipulator::{LinkGroup, Manipulator};
@@ -92,7 +93,14 @@ impl SceneValidity {
         }
         let mut fixed_ids = Vec::new();
         for body in fixed {
-            fixed_ids.push((Arc::clone(&body.body.name), model.add_fixed(&body.body, &body.world_from_body)?));
+            let id = model.add_fixed(&body.body, &body.world_from_body)?;
+            // The base rolls on the floor: its links keep their height.
+            if body.body.parts.iter().all(|part| matches!(part.shape, Shape::HalfSpace { .. })) {
+                for (link, _) in links.iter().zip(robot.links()).filter(|(_, link)| link.group == LinkGroup::Base) {
+                    model.disable(*link, id)?;
+                }
+            }
+            fixed_ids.push((Arc::clone(&body.body.name), id));
         }
         let supports = m.supports().iter().map(|support| {
             let under = fixed_ids.iter().filter(|(name, _)| support.bodies.contains(name));
@@ -317,7 +325,8 @@ impl SceneValidity {
         let mut t = 0.0;
         let mut ahead_m = self.options.clearance_m;
         // A pushed object and the link beside it may both move, towards each other.
-        let closing = if instance.object.is_some() && here.mode.held().is_none() { 2.0 } else { 1.0 };
+        let slides = |id: &ObjectId| instance.moves.contains(ComponentId::Object(*id)) && here.mode.held().is_none();
+        let closing = if instance.object.as_ref().is_some_and(slides) { 2.0 } else { 1.0 };
         while t < 1.0 {
             let step = if length_m > 0.0 { ahead_m.max(self.options.clearance_m) / (closing * length_m) } else { 1.0 };
             let t_next = if t + step >= 1.0 { 1.0 } else { t + step };

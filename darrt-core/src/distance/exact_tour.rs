@@ -2,12 +2,12 @@
 
 use smallvec::SmallVec;
 
-use super::euclidean::object_travel;
-use super::greedy_visit::{hop, last_leg};
+use super::greedy_visit::{Departure, hop, last_leg, nearest_departure, open_objects};
 use super::{Distance, GreedyVisit};
 use crate::domain::Domain;
 use crate::partial::PartialState;
 use crate::state::{ObjectId, State};
+use crate::tree::{NodeId, Tree};
 
 /// Like [`GreedyVisit`], but with the best order. Past [`ExactTour::MAX_OBJECTS`] open objects the number
 /// of orders explodes and it falls back to the greedy tour.
@@ -21,30 +21,42 @@ impl ExactTour {
 
 impl<D: Domain> Distance<D> for ExactTour {
     fn distance(&self, m: &D, from: &State<D>, to: &PartialState<D>) -> f64 {
-        let open: SmallVec<[ObjectId; 8]> =
-            to.objects().map(|(id, _)| id).filter(|id| !to.is_object_met(m, from, *id)).collect();
-        if open.len() > Self::MAX_OBJECTS {
-            return GreedyVisit.distance(m, from, to);
-        }
-        best_tour(m, from, to, &open, None, f64::INFINITY)
+        exact_tour(m, &Departure { state: from, working_point: None }, to, f64::INFINITY)
+    }
+
+    fn nearest(&self, m: &D, tree: &Tree<D>, to: &PartialState<D>) -> Option<NodeId> {
+        nearest_departure(m, tree, |from, bound| exact_tour(m, from, to, bound))
     }
 }
 
-/// Depth-first over the orders of `open`, cutting tours that are already longer than `bound`.
+fn exact_tour<D: Domain>(m: &D, from: &Departure<'_, D>, to: &PartialState<D>, bound: f64) -> f64 {
+    let (open, ways) = open_objects(m, from.state, to);
+    if open.len() > ExactTour::MAX_OBJECTS {
+        return GreedyVisit.distance(m, from.state, to);
+    }
+    if ways >= bound {
+        return f64::INFINITY;
+    }
+    let open: SmallVec<[ObjectId; 8]> = open.iter().map(|(id, _)| *id).collect();
+    ways + best_tour(m, from, to, &open, None, f64::INFINITY)
+}
+
+/// The shortest way of the robot between the objects. Depth-first over the orders of `open`, cutting tours that are
+/// already no shorter than `bound`.
 fn best_tour<D: Domain>(
     m: &D,
-    from: &State<D>,
+    from: &Departure<'_, D>,
     to: &PartialState<D>,
     open: &[ObjectId],
     last: Option<ObjectId>,
     bound: f64,
 ) -> f64 {
     if open.is_empty() {
-        return last_leg(m, from, to, last);
+        return last_leg(m, from.state, to, last);
     }
     let mut best = bound;
     for (slot, id) in open.iter().enumerate() {
-        let leg = hop(m, from, to, last, *id) + to.object(*id).map_or(0.0, |t| object_travel(m, from, *id, t));
+        let leg = hop(m, from, to, last, *id);
         if leg >= best {
             continue;
         }

@@ -8,6 +8,7 @@ use crate::domain::Domain;
 use crate::partial::PartialState;
 use crate::space::ComponentSpace;
 use crate::state::{ObjectId, State};
+use crate::tree::{NodeId, Tree};
 
 /// Robot to the nearest object that is not at its target, along with it to the target, on to the next
 /// nearest, and finally to the robot's own target.
@@ -16,43 +17,89 @@ pub struct GreedyVisit;
 
 impl<D: Domain> Distance<D> for GreedyVisit {
     fn distance(&self, m: &D, from: &State<D>, to: &PartialState<D>) -> f64 {
-        let mut open: SmallVec<[ObjectId; 8]> =
-            to.objects().map(|(id, _)| id).filter(|id| !to.is_object_met(m, from, *id)).collect();
-        let mut total = 0.0;
-        let mut last: Option<ObjectId> = None;
-        while let Some((slot, hop)) = nearest_open(m, from, to, &open, last) {
-            let id = open.swap_remove(slot);
-            total += hop + to.object(id).map_or(0.0, |target| object_travel(m, from, id, target));
-            last = Some(id);
-        }
-        total + last_leg(m, from, to, last)
+        greedy_tour(m, &Departure { state: from, working_point: None }, to, f64::INFINITY)
     }
+
+    fn nearest(&self, m: &D, tree: &Tree<D>, to: &PartialState<D>) -> Option<NodeId> {
+        nearest_departure(m, tree, |from, bound| greedy_tour(m, from, to, bound))
+    }
+}
+
+/// Where a tour starts: a state, and its working point if that is already known.
+pub(super) struct Departure<'a, D: Domain> {
+    pub(super) state: &'a State<D>,
+    pub(super) working_point: Option<[f64; 3]>,
+}
+
+/// The node with the shortest tour, its penalty included; the lowest index wins a tie. `tour` may give up, with an infinite length, as soon as
+/// it is no shorter than its bound.
+pub(super) fn nearest_departure<D: Domain>(
+    m: &D,
+    tree: &Tree<D>,
+    tour: impl Fn(&Departure<'_, D>, f64) -> f64,
+) -> Option<NodeId> {
+    let mut best: Option<(NodeId, f64)> = None;
+    for (id, node) in tree.iter() {
+        let from = Departure { state: &node.state, working_point: Some(node.working_point(m)) };
+        let bound = best.map_or(f64::INFINITY, |(_, least)| least);
+        let length = tour(&from, bound - node.penalty_m) + node.penalty_m;
+        if best.is_none_or(|(_, least)| length < least || (least.is_nan() && !length.is_nan())) {
+            best = Some((id, length));
+        }
+    }
+    best.map(|(id, _)| id)
+}
+
+/// An object that is not at its target, and how far it is from there.
+type Open = SmallVec<[(ObjectId, f64); 8]>;
+
+/// The named objects that are not at their targets, and the sum of their ways.
+pub(super) fn open_objects<D: Domain>(m: &D, from: &State<D>, to: &PartialState<D>) -> (Open, f64) {
+    let ways = to.objects().map(|(id, target)| (id, object_travel(m, from, id, target)));
+    let is_open = |id: ObjectId, way: f64| m.objects().get(id.index()).is_some_and(|s| !(way <= s.tolerance()));
+    let open: Open = ways.filter(|(id, way)| is_open(*id, *way)).collect();
+    let sum = open.iter().map(|(_, way)| way).sum();
+    (open, sum)
+}
+
+fn greedy_tour<D: Domain>(m: &D, from: &Departure<'_, D>, to: &PartialState<D>, bound: f64) -> f64 {
+    let (mut open, mut total) = open_objects(m, from.state, to);
+    let mut last: Option<ObjectId> = None;
+    // OPTIMIZATION: the ways of the objects alone often rule a node out, before the robot is asked about.
+    while total < bound
+        && let Some((slot, hop)) = nearest_open(m, from, to, &open, last)
+    {
+        last = Some(open.swap_remove(slot).0);
+        total += hop;
+    }
+    if total >= bound { f64::INFINITY } else { total + last_leg(m, from.state, to, last) }
 }
 
 /// Which of the `open` objects is closest to where the robot now is, and how far.
 fn nearest_open<D: Domain>(
     m: &D,
-    from: &State<D>,
+    from: &Departure<'_, D>,
     to: &PartialState<D>,
-    open: &[ObjectId],
+    open: &[(ObjectId, f64)],
     last: Option<ObjectId>,
 ) -> Option<(usize, f64)> {
-    let hops = open.iter().enumerate().map(|(slot, id)| (slot, *id, hop(m, from, to, last, *id)));
+    let hops = open.iter().enumerate().map(|(slot, (id, _))| (slot, *id, hop(m, from, to, last, *id)));
     hops.min_by(|a, b| a.2.total_cmp(&b.2).then(a.1.cmp(&b.1))).map(|(slot, _, hop)| (slot, hop))
 }
 
 /// Metres from the target of `last` (or from the robot's start) to the present place of `next`.
 pub(super) fn hop<D: Domain>(
     m: &D,
-    from: &State<D>,
+    from: &Departure<'_, D>,
     to: &PartialState<D>,
     last: Option<ObjectId>,
     next: ObjectId,
 ) -> f64 {
-    let Some(at) = from.object(next) else { return 0.0 };
-    match last.and_then(|id| Some((id, to.object(id)?))) {
-        Some(done) => m.hop(done, (next, at)),
-        None => m.reach(&from.robot, next, at),
+    let Some(at) = from.state.object(next) else { return 0.0 };
+    match (last.and_then(|id| Some((id, to.object(id)?))), from.working_point) {
+        (Some(done), _) => m.hop(done, (next, at)),
+        (None, Some(point)) => m.reach_from(point, &from.state.robot, next, at),
+        (None, None) => m.reach(&from.state.robot, next, at),
     }
 }
 

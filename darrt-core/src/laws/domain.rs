@@ -10,13 +10,15 @@ use super::{Broken, equal, measure};
 pub const COUNT: &str = "domain.count: a state has one configuration per object of the domain";
 /// Reach is a measure.
 pub const REACH: &str = "domain.reach: reach is finite and not negative";
+/// Reach from a known working point.
+pub const REACH_FROM: &str = "domain.reach-from: reach_from at the robot's working point is reach, bit for bit";
 /// Hop is a measure.
 pub const HOP: &str = "domain.hop: hop is finite and not negative";
 /// Names tell the components apart.
 pub const NAMES: &str = "domain.names: every component has a name of its own";
 
 /// The laws of this file.
-pub const LAWS: &[&str] = &[COUNT, REACH, HOP, NAMES];
+pub const LAWS: &[&str] = &[COUNT, REACH, REACH_FROM, HOP, NAMES];
 
 /// The laws of a domain and of all its component spaces, for three states, two parameters in `[0, 1]` and
 /// a seed.
@@ -68,8 +70,11 @@ fn travel<D: Domain>(m: &D, a: &State<D>, b: &State<D>) -> Result<(), Broken> {
     for (i, p) in a.objects.iter().enumerate() {
         let id = ObjectId::new(i);
         let of = |broken: Broken| broken.of(m.component_name(ComponentId::Object(id)));
-        measure(REACH, m.reach(&a.robot, id, p)).map_err(of)?;
-        measure(REACH, m.reach(&b.robot, id, p)).map_err(of)?;
+        for robot in [&a.robot, &b.robot] {
+            let metres = m.reach(robot, id, p);
+            measure(REACH, metres).map_err(of)?;
+            equal(REACH_FROM, &m.reach_from(m.working_point(robot), robot, id, p), &metres).map_err(of)?;
+        }
         for (j, q) in b.objects.iter().enumerate() {
             measure(HOP, m.hop((id, p), (ObjectId::new(j), q))).map_err(of)?;
         }

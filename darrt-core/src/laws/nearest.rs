@@ -7,7 +7,7 @@ use crate::domain::Domain;
 use crate::motion::{Instance, Waypoints};
 use crate::partial::PartialState;
 use crate::state::{ComponentSet, State};
-use crate::tree::{Edge, Tree};
+use crate::tree::{Edge, NodeId, Tree};
 
 use super::Broken;
 
@@ -35,7 +35,7 @@ pub fn check_nearest<D: Domain>(
             best = Some((id.index(), metres));
         }
     }
-    let found = distance.nearest(m, tree, to).map(|id| id.index());
+    let found = distance.nearest(m, tree, to).map(NodeId::index);
     if found == best.map(|(index, _)| index) {
         return Ok(());
     }
@@ -49,7 +49,7 @@ pub fn check_nearest<D: Domain>(
 }
 
 /// A tree that holds `root` and then `others`, each a child of the root: something to search in.
-pub fn tree_of<D: Domain>(root: State<D>, others: impl IntoIterator<Item = State<D>>) -> Tree<D> {
+pub fn tree_of<D: Domain>(root: &State<D>, others: impl IntoIterator<Item = State<D>>) -> Tree<D> {
     let mut tree = Tree::rooted_at(root.clone());
     for state in others {
         let states = vec![root.clone(), state.clone()];

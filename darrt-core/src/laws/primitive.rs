@@ -43,8 +43,7 @@ pub const NOT_EMPTY: &str = "primitive.not-empty: a propagation that succeeds ha
 /// Chained.
 pub const CHAINED: &str = "primitive.chained: the first instance starts at the given state and each next one where the last ended, bit for bit";
 /// Progress.
-pub const PROGRESS: &str =
-    "primitive.progress: the end is nearer to the target in something that the primitive moves, or in another mode";
+pub const PROGRESS: &str = "primitive.progress: a named object that moves ends nearer to its target; if none moves, the robot ends nearer to its own, or an object is grasped or let go";
 /// Truncation.
 pub const TRUNCATED: &str = "primitive.truncated: where propagation is claimed to be cut anywhere, propagating to a state on the way ends there";
 /// Contacts.
@@ -114,7 +113,6 @@ impl<D: Domain> Default for PrimitiveClaims<'_, D> {
 }
 
 /// What a check found: laws that hold because nothing happened are no proof, so count these.
-#[derive(Debug)]
 pub enum Tried<D: Domain> {
     /// The primitive was not useful; only the laws of `useful` were looked at.
     NotUseful,
@@ -122,6 +120,17 @@ pub enum Tried<D: Domain> {
     Infeasible(Infeasible),
     /// It was propagated, and every law was looked at.
     Propagated(Instances<D>),
+}
+
+// Not derived: that would ask the domain to be printable.
+impl<D: Domain> fmt::Debug for Tried<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotUseful => f.write_str("NotUseful"),
+            Self::Infeasible(why) => f.debug_tuple("Infeasible").field(why).finish(),
+            Self::Propagated(instances) => f.debug_tuple("Propagated").field(instances).finish(),
+        }
+    }
 }
 
 /// All laws of a primitive, for one state, target and seed, with the default [`PrimitiveClaims`].

@@ -94,7 +94,7 @@ impl<D: Domain> Trial<'_, D> {
     fn run(&self, seed: u64) -> Result<(), Broken> {
         let bare = self.bare_answers();
         let free = self.validity.free_prefix(self.m, self.instance, self.from);
-        self.shape(&free)?;
+        shape(&free)?;
         self.prefix(&free, seed)?;
         if let Some(blame) = &free.blame {
             readable(blame)?;
@@ -103,11 +103,6 @@ impl<D: Domain> Trial<'_, D> {
         self.exemptions(&bare)?;
         equal(PURE, &self.validity.free_prefix(self.m, self.instance, self.from), &free)?;
         self.cut(&free)
-    }
-
-    fn shape(&self, free: &FreePrefix) -> Result<(), Broken> {
-        let holds = (0.0..=1.0).contains(&free.fraction) && free.blame.is_none() == (free.fraction == 1.0);
-        ensure(FRACTION, holds, || format!("{free:?}"), "1 without blame, or less with blame")
     }
 
     /// No state of the prefix is rejected: its end, 2, 7 and 64 equal steps, and random ones.
@@ -187,6 +182,11 @@ impl<D: Domain> Trial<'_, D> {
         }
         Ok(())
     }
+}
+
+fn shape(free: &FreePrefix) -> Result<(), Broken> {
+    let holds = (0.0..=1.0).contains(&free.fraction) && free.blame.is_none() == (free.fraction == 1.0);
+    ensure(FRACTION, holds, || format!("{free:?}"), "1 without blame, or less with blame")
 }
 
 fn readable(blame: &Blame) -> Result<(), Broken> {

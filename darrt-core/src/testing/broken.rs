@@ -1,7 +1,7 @@
 //! Implementors that are wrong on purpose, each in the way people really get it wrong, and each with the
 //! law that must reject it and its honest twin: the laws of [`laws`](crate::laws) are themselves tested.
 //!
-//! The world they live in is [`bench`]: carts with turrets on a rail. Its spaces, motions, primitives and
+//! The world they live in is [`bench`](mod@bench): carts with turrets on a rail. Its spaces, motions, primitives and
 //! validities are sketches made of functions, so that every broken one differs from the honest one in
 //! exactly the function that is wrong.
 

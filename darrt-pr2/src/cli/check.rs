@@ -6,7 +6,7 @@ use super::output::Output;
 use super::steps;
 use crate::picture::Story;
 use crate::plan_file::PlanFile;
-use crate::verify::{self, Proof};
+use crate::verify::{self, Proof, SmallestClearance};
 
 /// Reads a plan and has it verified.
 ///
@@ -34,4 +34,10 @@ pub(super) fn words(proof: &Proof) -> String {
         text.push_str(&clearance(smallest));
     }
     text
+}
+
+fn clearance(smallest: &SmallestClearance) -> String {
+    let (first, second) = &smallest.bodies;
+    let place = if smallest.step == 0 { "at the start".to_owned() } else { format!("in step {}", smallest.step) };
+    format!("\nsmallest clearance: {:.1} mm between {first} and {second} {place}", smallest.distance_m * 1000.0)
 }

@@ -45,20 +45,20 @@ impl Failure {
     }
 
     /// Bad input or usage.
-    pub fn input(message: impl ToString) -> Self {
-        Self::new(Exit::BadInput, message.to_string())
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::new(Exit::BadInput, message)
     }
 }
 
 impl From<ProblemFileError> for Failure {
     fn from(error: ProblemFileError) -> Self {
-        Self::input(error)
+        Self::input(error.to_string())
     }
 }
 
 impl From<PictureError> for Failure {
     fn from(error: PictureError) -> Self {
-        Self::input(error)
+        Self::input(error.to_string())
     }
 }
 

@@ -38,9 +38,7 @@ impl Output {
                 self.is_closed = true;
                 Ok(())
             }
-            Err(error) => {
-                Err(Failure::new(Exit::CannotWrite, format!("standard output: cannot be written: {error}")))
-            }
+            Err(error) => Err(Failure::new(Exit::CannotWrite, format!("standard output: cannot be written: {error}"))),
         }
     }
 }

@@ -74,17 +74,11 @@ impl Counts {
     }
 
     fn line(&self, left: Option<Duration>) -> String {
-        let mut line = format!("{} iterations, tree {}", self.iterations, self.nodes);
-        if self.nearest.is_finite() {
-            line.push_str(&format!(", {:.2} m to the goal", self.nearest));
-        }
-        if self.restarts > 0 {
-            line.push_str(&format!(", {} restarts", self.restarts));
-        }
-        if let Some(left) = left {
-            line.push_str(&format!(", {} s left", left.as_secs()));
-        }
-        line
+        let near = self.nearest.is_finite().then(|| format!("{:.2} m to the goal", self.nearest));
+        let restarts = (self.restarts > 0).then(|| format!("{} restarts", self.restarts));
+        let left = left.map(|left| format!("{} s left", left.as_secs()));
+        let work = [format!("{} iterations", self.iterations), format!("tree {}", self.nodes)];
+        work.into_iter().chain(near).chain(restarts).chain(left).collect::<Vec<_>>().join(", ")
     }
 }
 

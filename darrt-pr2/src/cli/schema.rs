@@ -15,6 +15,6 @@ pub(super) fn run(options: &SchemaOptions, output: &mut Output) -> Result<Exit, 
         SchemaKind::Problem => problem_schema_text(),
         SchemaKind::Plan => plan_schema_text(),
     };
-    output.print(&text.map_err(Failure::input)?)?;
+    output.print(&text.map_err(|error| Failure::input(error.to_string()))?)?;
     Ok(Exit::Solved)
 }

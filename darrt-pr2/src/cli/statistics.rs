@@ -2,8 +2,10 @@
 
 use std::fmt::Write as _;
 
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use comfy_table::ContentArrangement;
 use darrt_core::observe::accounts::{Accounts, Bucket};
+
+use super::table;
 
 /// Pairs of bodies that are listed.
 const PAIRS: usize = 10;
@@ -13,7 +15,8 @@ const WIDTH: u16 = 118;
 /// Where the attempts of every primitive ended, and which bodies were most often in the way.
 pub(super) fn report(accounts: &Accounts) -> String {
     let mut text = format!(
-        "{} extensions: {} met their target, {} added nothing; {} states added; {} plans refused by the verifier\n\n",
+        "{} extensions: {} met their target, {} added nothing; {} states added; {} plans refused by the verifier\n\
+         Every extension ends in one row of each primitive's column.\n",
         accounts.extensions, accounts.met, accounts.empty, accounts.added, accounts.refused
     );
     // Writing to a string cannot fail.
@@ -28,11 +31,9 @@ pub(super) fn report(accounts: &Accounts) -> String {
 /// One column per primitive, one row per bucket that is not empty, and the sum of all.
 fn counts(accounts: &Accounts) -> String {
     let rows: Vec<_> = accounts.rows().collect();
-    let mut table = Table::new();
-    table.load_preset(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
     let names = rows.iter().map(|(name, _)| name.replace('-', " "));
-    table.set_header(std::iter::once("each extension ends in".to_owned()).chain(names));
+    let mut table = table::with_header(std::iter::once("ends in".to_owned()).chain(names));
+    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
     for bucket in Bucket::ALL {
         let of = |counts: &[u64; Bucket::ALL.len()]| counts.get(bucket as usize).copied().unwrap_or(0);
         if rows.iter().any(|(_, counts)| of(counts) > 0) {
@@ -42,10 +43,7 @@ fn counts(accounts: &Accounts) -> String {
     }
     let sums = rows.iter().map(|(_, counts)| counts.iter().sum::<u64>().to_string());
     table.add_row(std::iter::once("all".to_owned()).chain(sums));
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    table.trim_fmt()
+    table::finished(table, 1..=rows.len())
 }
 
 fn shown(count: u64) -> String {
@@ -53,16 +51,11 @@ fn shown(count: u64) -> String {
 }
 
 fn pairs(blocks: &[(&(String, String), u64)]) -> String {
-    let mut table = Table::new();
-    table.load_preset(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header(["most often in the way", "and", "times"]);
+    let mut table = table::with_header(["most often in the way", "and", "times"]);
     for ((first, second), count) in blocks {
         table.add_row([first.clone(), second.clone(), count.to_string()]);
     }
-    if let Some(column) = table.column_mut(2) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    table.trim_fmt()
+    table::finished(table, [2])
 }
 
 #[cfg(test)]

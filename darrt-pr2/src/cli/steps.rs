@@ -1,15 +1,13 @@
 //! The steps of a plan as a table.
 
-use comfy_table::{CellAlignment, Table, presets};
-
+use super::table;
 use crate::picture::story::Story;
 use crate::picture::travel::{Travel, amount};
 
 /// One row per step (what moved how far, number of waypoints) and a row of totals.
 pub(super) fn table(story: &Story) -> String {
-    let mut table = Table::new();
-    table.load_preset(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header(["step", "primitive", "object", "base moves", "hand moves", "object moves", "waypoints"]);
+    let mut table =
+        table::with_header(["step", "primitive", "object", "base moves", "hand moves", "object moves", "waypoints"]);
     let mut total = Travel::default();
     let mut waypoints = 0;
     for (number, step) in (1_usize..).zip(&story.steps) {
@@ -22,12 +20,7 @@ pub(super) fn table(story: &Story) -> String {
         waypoints += count;
     }
     table.add_row(row("", "all", "", &total, waypoints));
-    for column in [0, 6] {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table.trim_fmt()
+    table::finished(table, [0, 6])
 }
 
 fn row(number: &str, primitive: &str, object: &str, travel: &Travel, waypoints: usize) -> [String; 7] {

@@ -51,8 +51,10 @@ fn view(story: &Story, index: usize, step: &StoryStep, width: f64, height: f64) 
     let flat = |p: &nalgebra::Point3<f64>| Projection::Above.flat(p);
     let figures = [before(story, index), story.end_of(index)].map(|snapshot| Figure::new(story, snapshot));
     let robots = figures.iter().flat_map(|figure| figure.points().map(flat));
-    let objects = step.snapshots.iter().flat_map(|snapshot| snapshot.objects.get(step.object.unwrap_or(0)));
-    let points: Vec<_> = robots.chain(objects.map(|pose| flat(&pose.translation.vector.into()))).collect();
+    let objects = step.snapshots.iter().filter_map(|snapshot| snapshot.objects.get(step.object.unwrap_or(0)));
+    let hands = step.snapshots.iter().map(|snapshot| story.world_from_tool(snapshot));
+    let places = objects.copied().chain(hands).map(|pose| flat(&pose.translation.vector.into()));
+    let points: Vec<_> = robots.chain(places).collect();
     let shown = Window::around(points).unwrap_or_else(|| Window::centred(&Point2::origin(), LEAST, LEAST));
     let middle = nalgebra::center(&shown.low, &shown.high);
     let (w, h) = shown.padded(MARGIN).size();
@@ -100,15 +102,15 @@ fn draw_hand_way(story: &Story, step: &StoryStep, view: &View, group: &mut Eleme
 fn draw_caption(story: &Story, index: usize, step: &StoryStep, at: &Point2<f64>, width: f64, page: &mut Element) {
     let centre = at + Vector2::new(badge::RADIUS + 1.0, badge::RADIUS + 6.0);
     page.append(badge(&centre, index + 1, step.primitive));
-    let object = step.object.and_then(|object| story.problem.objects.get(object));
+    let travel = Travel::of(story, step);
+    let object = travel.object.and_then(|object| story.problem.objects.get(object));
     let heading = match object {
         Some(object) => format!("{} {}", step.primitive, object.name),
         None => step.primitive.to_string(),
     };
     let line = at + Vector2::new(2.0 * badge::RADIUS + 7.0, 18.0);
     page.append(ink::bold(ink::text(&line, 11.5, palette::TEXT, Anchor::Start, &heading)));
-    let words = Travel::of(story, step).in_words();
-    for (row, text) in (0_u8..).zip(ink::wrapped(&words, 10.5, width)) {
+    for (row, text) in (0_u8..).zip(ink::wrapped(&travel.in_words(), 10.5, width)) {
         let line = at + Vector2::new(2.0, 34.0 + 12.0 * f64::from(row));
         page.append(ink::text(&line, 10.5, palette::QUIET, Anchor::Start, &text));
     }

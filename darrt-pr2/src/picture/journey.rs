@@ -49,16 +49,27 @@ fn stops(story: &Story) -> Vec<Stop> {
 pub(super) fn draw_robots(story: &Story, view: &View, group: &mut Element) {
     let strength = if story.steps.is_empty() { 1.0 } else { 0.6 };
     Figure::new(story, &story.start).draw(view, Detail::Whole, palette::ROBOT, strength, group);
-    for (index, step) in story.steps.iter().enumerate() {
-        let colour = palette::of(step.primitive);
-        let mut drawn = ink::group(&format!("step {}: {}", index + 1, step.primitive));
-        let figure = Figure::new(story, story.end_of(index));
-        if moves_base(step) {
-            figure.draw(view, Detail::Whole, colour, 0.7, &mut drawn);
-        } else {
-            figure.draw(view, Detail::Arm, colour, 0.7, &mut drawn);
+    // What only moves the robot lies below what moves an object, and is paler.
+    for transits in [true, false] {
+        for (index, step) in story.steps.iter().enumerate().filter(|(_, step)| is_transit(step.primitive) == transits) {
+            let (colour, strength) = (palette::of(step.primitive), if transits { 0.35 } else { 0.75 });
+            let mut drawn = ink::group(&format!("step {}: {}", index + 1, step.primitive));
+            let detail = if moves_base(step) { Detail::Whole } else { Detail::Arm };
+            Figure::new(story, story.end_of(index)).draw(view, detail, colour, strength, &mut drawn);
+            group.append(drawn);
         }
-        group.append(drawn);
+    }
+}
+
+const fn is_transit(primitive: PrimitiveName) -> bool {
+    use PrimitiveName::{ArmTransit, BaseTransit, StraightLineArmTransit};
+    matches!(primitive, ArmTransit | BaseTransit | StraightLineArmTransit)
+}
+
+fn moves_base(step: &StoryStep) -> bool {
+    match (step.snapshots.first(), step.snapshots.last()) {
+        (Some(first), Some(last)) => first.robot.base != last.robot.base,
+        _ => false,
     }
 }
 
@@ -68,13 +79,6 @@ pub(super) fn draw_numbers(story: &Story, view: &View, badges: &mut Badges, grou
         let outline = stop.figure.base(view);
         let middle = outline.iter().fold(Point2::origin(), |sum, p| sum + p.coords / outline.len().max(1) as f64);
         badges.draw(&middle, &stop.numbers, group);
-    }
-}
-
-fn moves_base(step: &StoryStep) -> bool {
-    match (step.snapshots.first(), step.snapshots.last()) {
-        (Some(first), Some(last)) => first.robot.base != last.robot.base,
-        _ => false,
     }
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{Point2, Point3};
 use svg::Node as _;
 use svg::node::element::Element;
 
-use super::badge::{Badges, badge};
+use super::badge::Badges;
 use super::figure::{Detail, Figure, draw_goals, draw_objects, goal_points};
 use super::ink::{self, Anchor, Ink};
 use super::journey;
@@ -97,8 +97,12 @@ fn draw_close_up(story: &Story, room: &Room, view: &View, group: &mut Element) {
         }
     }
     journey::draw_pushes(story, view, group);
+    let mut badges = Badges::new(view.size());
     for (index, [from, to]) in journey::pushes(story, view) {
-        group.append(badge(&nalgebra::center(&from, &to), index + 1, PrimitiveName::Push));
+        // Beside the arrow, not on it.
+        let along = (to - from).try_normalize(1e-9).unwrap_or_default();
+        let aside = nalgebra::Vector2::new(-along.y, along.x) * (2.0 * journey::arrow_width(view));
+        badges.draw(&(nalgebra::center(&from, &to) + aside), &[(index + 1, PrimitiveName::Push)], group);
     }
 }
 

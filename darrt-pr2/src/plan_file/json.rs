@@ -80,7 +80,11 @@ fn written(open: &[Open]) -> String {
     let mut path = String::new();
     for level in open {
         match level {
-            Open::Array(index) => path.push_str(&format!("[{index}]")),
+            Open::Array(index) => {
+                path.push('[');
+                path.push_str(&index.to_string());
+                path.push(']');
+            }
             Open::Object { key, .. } if key.is_empty() => {}
             Open::Object { key, .. } => {
                 if !path.is_empty() {

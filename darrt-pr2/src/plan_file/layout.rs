@@ -25,7 +25,7 @@ impl Lines {
 
     fn close<W: ?Sized + Write>(&mut self, writer: &mut W, bracket: &[u8]) -> io::Result<()> {
         if self.has_entries && self.depth <= DEEPEST_BROKEN {
-            self.line(writer, self.depth - 1)?;
+            line(writer, self.depth - 1)?;
         }
         self.depth -= 1;
         writer.write_all(bracket)
@@ -36,15 +36,15 @@ impl Lines {
             writer.write_all(b",")?;
         }
         if self.depth <= DEEPEST_BROKEN {
-            return self.line(writer, self.depth);
+            return line(writer, self.depth);
         }
         if first { Ok(()) } else { writer.write_all(b" ") }
     }
+}
 
-    fn line<W: ?Sized + Write>(&self, writer: &mut W, indent: usize) -> io::Result<()> {
-        writer.write_all(b"\n")?;
-        (0..indent).try_for_each(|_| writer.write_all(b" "))
-    }
+fn line<W: ?Sized + Write>(writer: &mut W, indent: usize) -> io::Result<()> {
+    writer.write_all(b"\n")?;
+    (0..indent).try_for_each(|_| writer.write_all(b" "))
 }
 
 impl Formatter for Lines {

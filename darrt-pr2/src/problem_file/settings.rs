@@ -133,7 +133,7 @@ pub struct Transit {
 
 impl Default for Transit {
     fn default() -> Self {
-        Self { postures: vec![super::robot::DEFAULT_POSTURE.to_owned()] }
+        Self { postures: ["side", "up", "untucked", "above_and_to_side", "tucked"].map(str::to_owned).to_vec() }
     }
 }
 

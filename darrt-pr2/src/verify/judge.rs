@@ -1,15 +1,20 @@
 //! Replays a plan step by step.
 
-use nalgebra::{Isometry3, Point2, Vector2};
+mod chain;
+mod changes;
+mod limits;
+mod moment;
+
+use nalgebra::{Isometry3, Vector2};
 
 use super::goal;
 use super::hand::{PushCore, check_grip};
-use super::mode::{Act, Mode, Permits, drives};
-use super::motion::{Changes, Segment, State};
+use super::mode::{Act, Mode, Permits};
+use super::motion::{Segment, State};
 use super::options::VerifyOptions;
 use super::refusal::{Refusal, RefusalKind, Site};
-use super::robot::{Robot, Role};
-use super::stage::{Hit, PairKind, Rule, Stage};
+use super::robot::Robot;
+use super::stage::{PairKind, Rule, Stage};
 use super::world::World;
 use super::{Proof, start};
 use crate::plan_file::{PlanFile, Step, Waypoint};
@@ -112,7 +117,7 @@ impl<'a> Judge<'a> {
             _ => Rule::Apart,
         });
         self.robot.link_poses(&state.base, &state.joints, &mut self.links);
-        self.stage.place(&self.robot, &self.links, &state.objects);
+        self.stage.place(&self.robot, &self.links, &state.objects, 0.0);
         self.stage.check(0, 0.0).map_err(|hit| {
             let words = format!("{} and {} collide", hit.names.0, hit.names.1);
             refuse(RefusalKind::Collision, words).about(&hit.names.0, &hit.names.1).at(&hit.place)
@@ -131,7 +136,7 @@ impl<'a> Judge<'a> {
             return Err(site.refusal(0.0, RefusalKind::Malformed, text));
         };
         if first != last {
-            let text = format!("does not start where the step before ended: {}", difference(last, first));
+            let text = format!("does not start where the step before ended: {}", chain::difference(last, first));
             return Err(site.refusal(0.0, RefusalKind::Chain, text));
         }
         let act = Act::new(site, step, &self.world, &self.modes)?;
@@ -197,7 +202,7 @@ impl<'a> Judge<'a> {
         let segment = Segment::new(from, to, &self.robot);
         self.check_changes(trial, place, &segment)?;
         let way = trial.act.pushed.and_then(|object| pushed_way(&segment, object));
-        let parts = segment.parts(&trial.rates, self.options);
+        let (parts, travel_m) = segment.parts(&trial.rates, self.options);
         let mut now = from.clone();
         let first = usize::from(!place.is_first());
         for i in first..=parts {
@@ -205,11 +210,11 @@ impl<'a> Judge<'a> {
             let time = place.time(s);
             segment.robot_at(s, &mut now);
             self.robot.link_poses(&now.base, &now.joints, &mut self.links);
-            self.move_objects(trial, &segment, s, &mut now)?;
+            self.move_objects(trial, &segment, s, &mut now);
             if i == 0 || i == parts {
                 self.check_rigid(trial, time, &now, if i == 0 { from } else { to })?;
             }
-            self.stage.place(&self.robot, &self.links, &now.objects);
+            self.stage.place(&self.robot, &self.links, &now.objects, travel_m);
             self.check_state(trial, time, &now, way)?;
         }
         if place.is_first()
@@ -219,205 +224,6 @@ impl<'a> Judge<'a> {
             check_grip(trial.site, place.time(1.0), &self.robot, &self.stage, holding.object, self.options)?;
         }
         Ok(())
-    }
-
-    /// Puts the objects where they are at `s`: held ones by the hand, pushed ones along their way.
-    fn move_objects(&self, trial: &Trial<'a>, segment: &Segment<'_>, s: f64, now: &mut State) -> Result<(), Refusal> {
-        if let Some(holding) = trial.act.holding
-            && let Some(pose) = now.objects.get_mut(holding.object)
-        {
-            *pose = self.links[self.robot.tool] * holding.tool_from_object;
-        }
-        if let Some(object) = trial.act.pushed
-            && let (Some(pose), Some(slid)) = (now.objects.get_mut(object), segment.slid(object, s))
-        {
-            *pose = slid;
-        }
-        Ok(())
-    }
-
-    /// At a waypoint the file must put a held object where the hand has it.
-    fn check_rigid(&self, trial: &Trial<'a>, time: f64, now: &State, waypoint: &State) -> Result<(), Refusal> {
-        let Some(holding) = trial.act.holding else { return Ok(()) };
-        let (Some(here), Some(written)) = (now.objects.get(holding.object), waypoint.objects.get(holding.object))
-        else {
-            return Ok(());
-        };
-        let distance = (here.translation.vector - written.translation.vector).norm();
-        let angle = here.rotation.angle_to(&written.rotation);
-        if distance <= self.options.rigid_m && angle <= self.options.rigid_rad {
-            return Ok(());
-        }
-        let name = self.world.object_name(holding.object);
-        let text = format!("{name} is {distance:.6} m and {angle:.6} rad from where the hand holds it");
-        Err(trial.site.refusal(time, RefusalKind::Grasp, text).at(&written.translation.vector.into()))
-    }
-
-    /// Everything about one state of a step.
-    fn check_state(
-        &mut self,
-        trial: &Trial<'a>,
-        time: f64,
-        now: &State,
-        way: Option<Vector2<f64>>,
-    ) -> Result<(), Refusal> {
-        let site = trial.site;
-        if let (Some(core), Some(object)) = (&trial.core, trial.act.pushed) {
-            core.check_depth(site, time, &self.robot, &self.stage, object)?;
-            self.check_on_surface(site, time, object, now)?;
-            if let Some(way) = way {
-                core.check_contact(site, time, &self.robot, &self.stage, object, &way, self.options)?;
-            }
-        }
-        if let Some(holding) = trial.act.holding {
-            self.check_object_bounds(holding.object, now)
-                .map_err(|text| site.refusal(time, RefusalKind::Bounds, text))?;
-        }
-        if let Some([start, end]) = &trial.line {
-            self.check_line(site, time, start, end)?;
-        }
-        self.stage.check(site.step, time).map_err(|hit| {
-            let Hit { names: (a, b), place } = hit;
-            site.refusal(time, RefusalKind::Collision, format!("{a} and {b} collide")).about(&a, &b).at(&place)
-        })
-    }
-
-    /// A pushed object does not leave its surface.
-    fn check_on_surface(&self, site: Site, time: f64, object: usize, now: &State) -> Result<(), Refusal> {
-        let (Some(Mode::Resting { surface }), Some(pose)) = (self.modes.get(object), now.objects.get(object)) else {
-            return Ok(());
-        };
-        let Some(surface) = self.world.surface(*surface) else { return Ok(()) };
-        let inside = surface.depth(&Point2::from(pose.translation.vector.xy()));
-        if inside >= 0.0 {
-            return Ok(());
-        }
-        let (name, plane) = (self.world.object_name(object), surface.name());
-        let text = format!("the centre of {name} is {:.4} m beside `{plane}`", -inside);
-        Err(site.refusal(time, RefusalKind::Support, text).about(name, plane).at(&pose.translation.vector.into()))
-    }
-
-    fn check_line(&self, site: Site, time: f64, start: &Isometry3<f64>, end: &Isometry3<f64>) -> Result<(), Refusal> {
-        let tool = &self.links[self.robot.tool];
-        let (from, way) = (start.translation.vector, end.translation.vector - start.translation.vector);
-        let gone = tool.translation.vector - from;
-        let share = if way.norm() > 0.0 { (gone.dot(&way) / way.norm_squared()).clamp(0.0, 1.0) } else { 0.0 };
-        let beside = (gone - way * share).norm();
-        let turned = tool.rotation.angle_to(&start.rotation);
-        if beside <= self.options.line_m && turned <= self.options.line_rad {
-            return Ok(());
-        }
-        let text = format!(
-            "the tool is {beside:.4} m beside its straight line and turned by {turned:.4} rad, at most {} m and {:.4} rad \
-             are straight",
-            self.options.line_m, self.options.line_rad
-        );
-        Err(site.refusal(time, RefusalKind::StraightLine, text).at(&tool.translation.vector.into()))
-    }
-
-    /// Joint limits of a waypoint, bounds of base and objects.
-    fn check_limits(&self, state: &State) -> Result<(), (RefusalKind, String)> {
-        let slack = self.options.rounding;
-        for (i, (value, limit)) in state.joints.iter().zip(&self.robot.limits).enumerate() {
-            if *value < limit.lower - slack || *value > limit.upper + slack {
-                let (name, low, high) = (self.robot.joint_name(i), limit.lower, limit.upper);
-                return Err((RefusalKind::Joints, format!("`{name}` is {value}, its limits are [{low}, {high}]")));
-            }
-        }
-        let bounds = &self.plan.problem.bounds;
-        for (axis, value, [low, high]) in [("x", state.base[0], bounds.base_x), ("y", state.base[1], bounds.base_y)] {
-            if value < low - slack || value > high + slack {
-                return Err((
-                    RefusalKind::Bounds,
-                    format!("the base's {axis} is {value}, its bounds are [{low}, {high}]"),
-                ));
-            }
-        }
-        (0..state.objects.len())
-            .try_for_each(|object| self.check_object_bounds(object, state))
-            .map_err(|text| (RefusalKind::Bounds, text))
-    }
-
-    fn check_object_bounds(&self, object: usize, state: &State) -> Result<(), String> {
-        let Some(pose) = state.objects.get(object) else { return Ok(()) };
-        let (bounds, slack) = (&self.plan.problem.bounds, self.options.rounding);
-        let ranges = [("x", bounds.object_x), ("y", bounds.object_y), ("z", bounds.object_z)];
-        for ((axis, [low, high]), value) in ranges.into_iter().zip(pose.translation.vector.iter()) {
-            if *value < low - slack || *value > high + slack {
-                let name = self.world.object_name(object);
-                return Err(format!("the {axis} of {name} is {value}, its bounds are [{low}, {high}]"));
-            }
-        }
-        Ok(())
-    }
-
-    /// Only what the step moves differs between the ends of a segment.
-    fn check_changes(&self, trial: &Trial<'a>, place: Place, segment: &Segment<'_>) -> Result<(), Refusal> {
-        let site = trial.site;
-        let stray = |text: String| Err(site.refusal(place.time(0.0), RefusalKind::Stray, text));
-        if let Some(what) = segment.half_turn(&self.robot) {
-            let text = format!("{what} turns by half a turn, so that neither way is the shorter one");
-            return Err(site.refusal(place.time(0.0), RefusalKind::Joints, text));
-        }
-        let changes = segment.changes(&self.robot);
-        if let Some(joint) = changes.parked {
-            return stray(format!("`{}` moves, but must stand still", self.robot.joint_name(joint)));
-        }
-        if changes.base && !drives(site.primitive) {
-            return stray(format!("the base moves in {}", site.primitive));
-        }
-        if changes.arm && drives(site.primitive) {
-            let joint = segment.joints.iter().zip(&self.robot.roles).position(|(d, r)| *d != 0.0 && *r == Role::Arm);
-            let name = joint.map_or("the arm", |joint| self.robot.joint_name(joint));
-            return stray(format!("`{name}` moves in {}", site.primitive));
-        }
-        self.check_finger(trial, place, changes)?;
-        for (object, (a, b)) in segment.from.objects.iter().zip(&segment.to.objects).enumerate() {
-            let is_held = trial.act.holding.is_some_and(|holding| holding.object == object);
-            if a == b || is_held {
-                continue;
-            }
-            let name = self.world.object_name(object);
-            if trial.act.pushed != Some(object) {
-                return stray(format!("{name} moves, but the step does not move it"));
-            }
-            let slack = self.options.rounding;
-            let risen = (a.translation.z - b.translation.z).abs();
-            if risen > slack || a.rotation.angle_to(&b.rotation) > slack.max(1e-7) {
-                let text = format!("{name} is pushed and must neither rise nor turn; it rises {risen:.6} m");
-                return Err(site.refusal(place.time(1.0), RefusalKind::Push, text));
-            }
-            if changes.finger != 0.0 {
-                return stray(format!("{name} is pushed by the opening hand"));
-            }
-        }
-        Ok(())
-    }
-
-    /// The hand opens and closes alone, at the ends of steps, and only where it must while something is held.
-    fn check_finger(&self, trial: &Trial<'a>, place: Place, changes: Changes) -> Result<(), Refusal> {
-        let refuse =
-            |text: &str| Err(trial.site.refusal(place.time(0.0), RefusalKind::Gripper, format!("the hand {text}")));
-        let opens = changes.finger;
-        if opens != 0.0 && (changes.arm || changes.base) {
-            return refuse("opens or closes while arm or base move");
-        }
-        match trial.site.primitive {
-            PrimitiveName::Pick if place.is_first() && opens >= 0.0 => {
-                refuse("must close between the first two waypoints of Pick")
-            }
-            PrimitiveName::Pick if !place.is_first() && opens != 0.0 => refuse("opens or closes after it has picked"),
-            PrimitiveName::Place if place.is_last() && opens <= 0.0 => {
-                refuse("must open between the last two waypoints of Place")
-            }
-            PrimitiveName::Place if !place.is_last() && opens != 0.0 => refuse("opens or closes before it has placed"),
-            PrimitiveName::Pick | PrimitiveName::Place => Ok(()),
-            _ if opens != 0.0 && trial.act.holding.is_some() => refuse("opens or closes on what it carries"),
-            _ if opens != 0.0 && !place.is_first() && !place.is_last() => {
-                refuse("opens or closes in the middle of a step")
-            }
-            _ => Ok(()),
-        }
     }
 
     /// What the step leaves behind.
@@ -457,20 +263,4 @@ fn pushed_way(segment: &Segment<'_>, object: usize) -> Option<Vector2<f64>> {
     let (from, to) = (segment.from.objects.get(object)?, segment.to.objects.get(object)?);
     let way = to.translation.vector.xy() - from.translation.vector.xy();
     (way.norm() > STANDS_M).then_some(way)
-}
-
-/// The first thing in which two waypoints differ, in words.
-fn difference(a: &Waypoint, b: &Waypoint) -> String {
-    if a.base != b.base {
-        return format!("the base was at {:?} and is at {:?}", a.base, b.base);
-    }
-    if let Some((name, value)) = b.joints.iter().find(|(name, value)| a.joints.get(*name) != Some(*value)) {
-        let before = a.joints.get(name).map_or_else(|| "missing".to_owned(), f64::to_string);
-        return format!("`{name}` was {before} and is {value}");
-    }
-    if let Some((name, pose)) = b.objects.iter().find(|(name, pose)| a.objects.get(*name) != Some(*pose)) {
-        let before = a.objects.get(name).map_or_else(|| "missing".to_owned(), |p| format!("{:?}", p.position));
-        return format!("{name} was at {before} and is at {:?}", pose.position);
-    }
-    "something is missing".to_owned()
 }

@@ -116,17 +116,24 @@ impl<'a> Segment<'a> {
         }
     }
 
-    /// In how many equal parts to look at it. `rates`: see [`Robot::travel_rates`].
-    pub(super) fn parts(&self, rates: &[f64], options: &VerifyOptions) -> usize {
+    /// In how many equal parts to look at it, and how far anything travels in one of them at most, metres. `rates`: see
+    /// [`Robot::travel_rates`].
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped to a range that fits any usize"
+    )]
+    pub(super) fn parts(&self, rates: &[f64], options: &VerifyOptions) -> (usize, f64) {
         let [x, y, yaw] = self.base;
         let turns = self.joints.iter().chain([&yaw]);
         let travel: f64 = turns.clone().zip(rates).map(|(turn, rate)| turn.abs() * rate).sum();
         let pushed = self.from.objects.iter().zip(&self.to.objects);
         let pushed = pushed.map(|(a, b)| (a.translation.vector - b.translation.vector).norm()).fold(0.0, f64::max);
-        let by_travel = (travel + x.hypot(y)).max(pushed) / options.travel_m;
+        let travel = (travel + x.hypot(y)).max(pushed);
         let by_turn = turns.map(|turn| turn.abs()).fold(0.0, f64::max) / options.joint_rad;
         // Both are finite: coordinates are bounded and turns are wrapped or within limits.
-        by_travel.max(by_turn).ceil().clamp(1.0, 1e9) as usize
+        let count = (travel / options.travel_m).max(by_turn).ceil().clamp(1.0, 1e9);
+        (count as usize, travel / count)
     }
 
     /// Writes base and joints at `s` in `[0, 1]`; exactly the ends at the ends.

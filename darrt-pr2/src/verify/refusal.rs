@@ -50,7 +50,7 @@ pub enum RefusalKind {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refusal {
     /// Number of the step, from 1; `None` when the plan as a whole is at fault.
-    pub step: Option<usize>,
+    pub step: Option<u32>,
     /// What the step claims to be.
     pub primitive: Option<PrimitiveName>,
     /// Fraction of the step, 0 to 1, its waypoints taken as equally spaced.
@@ -62,12 +62,12 @@ pub struct Refusal {
     /// Where in the world, where it is about a place.
     pub place: Option<[f64; 3]>,
     /// What is wrong, with names, values and bounds.
-    pub message: String,
+    pub message: Box<str>,
 }
 
 impl Refusal {
     /// A fault of the plan as a whole.
-    pub(super) fn whole(kind: RefusalKind, message: impl Into<String>) -> Self {
+    pub(super) fn whole(kind: RefusalKind, message: impl Into<Box<str>>) -> Self {
         Self { step: None, primitive: None, time: 0.0, kind, bodies: None, place: None, message: message.into() }
     }
 
@@ -107,13 +107,13 @@ impl std::error::Error for Refusal {}
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Site {
     /// From 1.
-    pub(super) step: usize,
+    pub(super) step: u32,
     pub(super) primitive: PrimitiveName,
 }
 
 impl Site {
     /// A fault of this step at a fraction of it.
-    pub(super) fn refusal(self, time: f64, kind: RefusalKind, message: impl Into<String>) -> Refusal {
+    pub(super) fn refusal(self, time: f64, kind: RefusalKind, message: impl Into<Box<str>>) -> Refusal {
         Refusal { step: Some(self.step), primitive: Some(self.primitive), time, ..Refusal::whole(kind, message) }
     }
 }

@@ -43,6 +43,11 @@ impl Solid {
         self.body.parts.first().map(|part| &part.shape)
     }
 
+    /// World centre of the ball around it.
+    pub(super) fn world_centre(&self, world_from_solid: &Isometry3<f64>) -> Point3<f64> {
+        world_from_solid * self.centre
+    }
+
     /// How far from its own frame's origin it reaches, metres.
     pub(super) fn reach(&self) -> f64 {
         self.centre.coords.norm() + self.radius
@@ -55,21 +60,37 @@ impl Solid {
     }
 }
 
+/// A solid at a pose, with what is asked for often.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Placed<'a> {
+    pub(super) solid: &'a Solid,
+    pub(super) world_from_solid: &'a Isometry3<f64>,
+    /// See [`Solid::world_centre`].
+    pub(super) centre: Point3<f64>,
+}
+
+impl Placed<'_> {
+    /// Distance from a world point to the box around the solid.
+    fn beyond_box(&self, p: &Point3<f64>) -> f64 {
+        self.solid.beyond_box(&self.world_from_solid.inverse_transform_point(p))
+    }
+}
+
 /// A lower bound of the distance between two solids: ball to ball, and each ball to the other's box. May be negative.
-pub(super) fn lower_bound(a: &Solid, world_from_a: &Isometry3<f64>, b: &Solid, world_from_b: &Isometry3<f64>) -> f64 {
-    let (centre_a, centre_b) = (world_from_a * a.centre, world_from_b * b.centre);
-    let balls = (centre_a - centre_b).norm() - a.radius - b.radius;
+pub(super) fn lower_bound(a: &Placed<'_>, b: &Placed<'_>) -> f64 {
+    let (solid_a, solid_b) = (a.solid, b.solid);
+    if let Some(Shape::HalfSpace { normal, .. }) = solid_b.shape() {
+        return normal.dot(&b.world_from_solid.inverse_transform_point(&a.centre).coords) - solid_a.radius;
+    }
+    let balls = (a.centre - b.centre).norm() - solid_a.radius - solid_b.radius;
     if balls > 0.0 {
         return balls;
     }
-    let a_to_box = b.beyond_box(&world_from_b.inverse_transform_point(&centre_a)) - a.radius;
-    let b_to_box = a.beyond_box(&world_from_a.inverse_transform_point(&centre_b)) - b.radius;
-    match b.shape() {
-        Some(Shape::HalfSpace { normal, .. }) => {
-            normal.dot(&world_from_b.inverse_transform_point(&centre_a).coords) - a.radius
-        }
-        _ => a_to_box.max(b_to_box),
+    let small_to_large = b.beyond_box(&a.centre) - solid_a.radius;
+    if small_to_large > 0.0 {
+        return small_to_large;
     }
+    a.beyond_box(&b.centre) - solid_b.radius
 }
 
 /// The oracle's answer about two solids.
@@ -115,7 +136,9 @@ mod tests {
             for a in &solids[..3] {
                 for b in &solids {
                     let (at_a, at_b) = (pose(), pose());
-                    let bound = lower_bound(a, &at_a, b, &at_b);
+                    let placed_a = Placed { solid: a, world_from_solid: &at_a, centre: a.world_centre(&at_a) };
+                    let placed_b = Placed { solid: b, world_from_solid: &at_b, centre: b.world_centre(&at_b) };
+                    let bound = lower_bound(&placed_a, &placed_b);
                     let found = exact(a, &at_a, b, &at_b).unwrap();
                     assert!(bound <= found.distance + 1e-9, "{bound} {found:?}");
                 }

@@ -16,7 +16,7 @@ use nalgebra::{Isometry3, Vector3};
 
 /// The body that carries the plate.
 pub(crate) const TABLE: &str = "central table top";
-/// The object of every plan here.
+/// The object of most plans here.
 pub(crate) const PLATE: &str = "plate";
 /// Distance between waypoints along lines of the tool, metres.
 const STEP_M: f64 = 0.02;
@@ -27,7 +27,8 @@ pub(crate) struct Builder {
     table: JointTable,
     arm: Arm,
     pub(crate) body: WholeBody,
-    pub(crate) plate: Isometry3<f64>,
+    object: String,
+    plate: Isometry3<f64>,
     held: Option<Isometry3<f64>>,
     pushed: bool,
     start: Waypoint,
@@ -35,7 +36,7 @@ pub(crate) struct Builder {
 }
 
 impl Builder {
-    /// The right arm at `q`, the hand open by `gap`, the plate where `problem` puts it.
+    /// The right arm at `q`, the hand open by `gap`, the first object where `problem` puts it.
     pub(crate) fn new(problem: &ProblemFile, q: ArmConfiguration, gap: f64) -> Self {
         let model = Pr2Model::embedded().unwrap();
         let table = JointTable::new(&RobotDescription::from_text(URDF).unwrap(), model.tree());
@@ -47,7 +48,18 @@ impl Builder {
         let plate = problem.geometry().unwrap().objects[0].world_from_object;
         let arm = Arm::new(Side::Right, body.torso_m, LimitKind::Soft).unwrap();
         let start = Waypoint { base: [0.0; 3], joints: BTreeMap::new(), objects: BTreeMap::new() };
-        let mut builder = Self { model, table, arm, body, plate, held: None, pushed: false, start, steps: Vec::new() };
+        let mut builder = Self {
+            model,
+            table,
+            arm,
+            body,
+            object: problem.objects[0].name.clone(),
+            plate,
+            held: None,
+            pushed: false,
+            start,
+            steps: Vec::new(),
+        };
         builder.start = builder.waypoint();
         builder
     }
@@ -61,18 +73,18 @@ impl Builder {
         Waypoint {
             base: self.body.base,
             joints: self.table.complete(&self.model.joint_values(&self.body)),
-            objects: BTreeMap::from([(PLATE.to_owned(), Pose::from(self.plate))]),
+            objects: BTreeMap::from([(self.object.clone(), Pose::from(self.plate))]),
         }
     }
 
     /// Begins a step at the present state.
     pub(crate) fn begin(&mut self, primitive: PrimitiveName, object: Option<&str>) -> &mut Self {
-        let holds = self.held.map(|pose| Hold { object: PLATE.to_owned(), tool_from_object: pose.into() });
+        let holds = self.held.map(|pose| Hold { object: self.object.clone(), tool_from_object: pose.into() });
         let first = self.waypoint();
         self.steps.push(Step {
             primitive,
             object: object.map(str::to_owned),
-            pushes: (primitive == PrimitiveName::Push).then(|| PLATE.to_owned()),
+            pushes: (primitive == PrimitiveName::Push).then(|| self.object.clone()),
             allowed_contacts: Vec::new(),
             holds,
             waypoints: vec![first],
@@ -90,7 +102,13 @@ impl Builder {
 
     /// The fingers may touch the plate in this step.
     pub(crate) fn touching(&mut self, reason: ContactReason) -> &mut Self {
-        self.allow(AllowedContact::fingers(Side::Right, PLATE, reason))
+        self.allow(AllowedContact::fingers(Side::Right, &self.object, reason))
+    }
+
+    /// The object may touch the body that carries it.
+    pub(crate) fn lifting_from(&mut self, body: &str) -> &mut Self {
+        let contact = AllowedContact::support(&self.object, body);
+        self.allow(vec![contact])
     }
 
     /// More contacts that this step allows.
@@ -166,7 +184,8 @@ impl Builder {
     pub(crate) fn attach(&mut self) -> &mut Self {
         let held = self.tool().inverse() * self.plate;
         self.held = Some(held);
-        self.steps.last_mut().unwrap().holds = Some(Hold { object: PLATE.to_owned(), tool_from_object: held.into() });
+        self.steps.last_mut().unwrap().holds =
+            Some(Hold { object: self.object.clone(), tool_from_object: held.into() });
         self
     }
 

@@ -1,8 +1,10 @@
 //! Three right plans, and what is needed to make them wrong.
 
+use std::sync::LazyLock;
+
 use darrt_pr2::arm::{Arm, ArmConfiguration, LimitKind, Side};
 use darrt_pr2::forward::{ArmChain, world_from_base};
-use darrt_pr2::plan_file::{AllowedContact, ContactReason, PlanFile};
+use darrt_pr2::plan_file::{ContactReason, PlanFile};
 use darrt_pr2::postures::ArmPosture;
 use darrt_pr2::problem_file::{Goal, ObjectGoal, PrimitiveName, ProblemFile, builtin};
 use nalgebra::Vector3;
@@ -11,11 +13,11 @@ use crate::builder::{Builder, PLATE, TABLE};
 
 /// The contact of the worked push of Plate1: base, and the right arm at the contact.
 const PUSH_BASE: [f64; 3] = [-0.8, 0.0, 0.0];
-const PUSH_CONTACT: ArmConfiguration = [0.240989, 0.225073, -1.17, -0.825254, -2.010273, -1.699174, -0.579167];
+const PUSH_CONTACT: ArmConfiguration = [0.240_989, 0.225_073, -1.17, -0.825_254, -2.010_273, -1.699_174, -0.579_167];
 
 /// The level grasp of the worked pick at the right edge of Plate1.
 const PICK_BASE: [f64; 3] = [-0.66, -1.43, 2.27];
-const PICK_GRASP: ArmConfiguration = [-1.66434, 0.100358, -2.2, -1.432225, 2.30036, -0.790752, -2.153001];
+const PICK_GRASP: ArmConfiguration = [-1.664_34, 0.100_358, -2.2, -1.432_225, 2.300_36, -0.790_752, -2.153_001];
 const PICK_PLATE: [f64; 2] = [-0.2, -0.53];
 
 /// Gap of the open hand of the pick, and of the hand that holds the plate.
@@ -62,7 +64,8 @@ fn moved(base: [f64; 3], q: ArmConfiguration, way: Vector3<f64>) -> ArmConfigura
 
 /// Plate1, shortened: down behind the plate, push it 0.3 m to the right, up again.
 pub(crate) fn push() -> PlanFile {
-    push_of([-0.2, 0.05])
+    static PLAN: LazyLock<PlanFile> = LazyLock::new(|| push_of([-0.2, 0.05]));
+    PLAN.clone()
 }
 
 /// The same with the plate starting elsewhere.
@@ -82,6 +85,11 @@ pub(crate) fn push_of(plate: [f64; 2]) -> PlanFile {
 /// The empty table of Simple Plate, the plate over its right edge: grasp the rim, lift, carry it by base and by arm, set
 /// it down again, back off.
 pub(crate) fn carry() -> PlanFile {
+    static PLAN: LazyLock<PlanFile> = LazyLock::new(build_carry);
+    PLAN.clone()
+}
+
+fn build_carry() -> PlanFile {
     let out = Vector3::new(0.0, -0.1, 0.0);
     let lift = Vector3::new(0.0, 0.0, 0.05);
     let away = moved(PICK_BASE, PICK_GRASP, out);
@@ -89,7 +97,7 @@ pub(crate) fn carry() -> PlanFile {
     let mut b = Builder::new(&problem, away, OPEN);
     b.begin(PrimitiveName::StraightLineArmTransit, Some(PLATE)).line(-out);
     b.begin(PrimitiveName::Pick, Some(PLATE)).attach().touching(ContactReason::Grasp);
-    b.allow(vec![AllowedContact::support(PLATE, TABLE)]).hand(CLOSED).line(lift);
+    b.lifting_from(TABLE).hand(CLOSED).line(lift);
     let lifted = b.body.arms[0];
     b.begin(PrimitiveName::BaseRigidTransfer, None).touching(ContactReason::Grasp).drive([-0.66, -1.5, 2.3]);
     b.begin(PrimitiveName::ArmRigidTransfer, Some(PLATE)).touching(ContactReason::Grasp);
@@ -98,7 +106,7 @@ pub(crate) fn carry() -> PlanFile {
     b.arm_to(aside).arm_to(lifted);
     b.begin(PrimitiveName::BaseRigidTransfer, None).touching(ContactReason::Grasp).drive(PICK_BASE);
     b.begin(PrimitiveName::Place, Some(PLATE)).touching(ContactReason::Grasp);
-    b.allow(vec![AllowedContact::support(PLATE, TABLE)]).line(-lift).hand(OPEN).detach();
+    b.lifting_from(TABLE).line(-lift).hand(OPEN).detach();
     b.begin(PrimitiveName::StraightLineArmTransit, Some(PLATE)).touching(ContactReason::Retreat).line(out);
     b.plan(&problem)
 }
@@ -116,3 +124,72 @@ pub(crate) fn wave() -> PlanFile {
     b.begin(PrimitiveName::ArmTransit, None).arm_to(high);
     b.plan(&problem)
 }
+
+/// A grasp to lift an object by and to set it down again.
+pub(crate) struct Lift {
+    /// An embedded problem, the body that carries its object, and where the object starts.
+    pub(crate) problem: &'static str,
+    pub(crate) carrier: &'static str,
+    pub(crate) at: [f64; 2],
+    /// Base and right arm at the grasp.
+    pub(crate) base: [f64; 3],
+    pub(crate) grasp: ArmConfiguration,
+    /// Gaps of the open and of the closed hand.
+    pub(crate) gaps: [f64; 2],
+    /// Whether the open fingers touch the solid that stands for the object.
+    pub(crate) straddles: bool,
+}
+
+/// In along the hand, close, up 2 cm, down, open, out along the hand.
+pub(crate) fn lift(lift: &Lift) -> PlanFile {
+    let tool = ArmChain::new(Side::Right, 0.2).world_from_tool(&lift.base, &lift.grasp);
+    let out = tool.rotation * Vector3::new(-0.1, 0.0, 0.0);
+    let up = Vector3::new(0.0, 0.0, 0.02);
+    let [open, closed] = lift.gaps;
+    let away = moved(lift.base, lift.grasp, out);
+    let mut problem = problem(lift.problem, lift.base, away, lift.at, lift.at);
+    let (name, on) = (problem.objects[0].name.clone(), problem.objects[0].on.clone());
+    (problem.goal.objects[0].object, problem.goal.objects[0].on) = (name.clone(), Some(on));
+    let mut b = Builder::new(&problem, away, open);
+    b.begin(PrimitiveName::StraightLineArmTransit, Some(&name));
+    if lift.straddles {
+        b.touching(ContactReason::Grasp);
+    }
+    b.line(-out).begin(PrimitiveName::Pick, Some(&name)).attach().touching(ContactReason::Grasp);
+    b.lifting_from(lift.carrier).hand(closed).line(up);
+    b.begin(PrimitiveName::Place, Some(&name)).touching(ContactReason::Grasp).lifting_from(lift.carrier);
+    b.line(-up).hand(open).detach();
+    b.begin(PrimitiveName::StraightLineArmTransit, Some(&name)).touching(ContactReason::Retreat).line(out);
+    b.plan(&problem)
+}
+
+/// The worked picks: a plate by its rim with the hand tilted by 30 and by 45 degrees, a bowl by its wall from above.
+pub(crate) const LIFTS: [Lift; 3] = [
+    Lift {
+        problem: "simple-plate",
+        carrier: TABLE,
+        at: PICK_PLATE,
+        base: [-0.9, -0.39, 1.08],
+        grasp: [-1.291_075, -0.265_656, -3.7, -1.409_072, 1.274_59, -1.699_329, -1.308_411],
+        gaps: [0.05, 0.02],
+        straddles: false,
+    },
+    Lift {
+        problem: "simple-plate",
+        carrier: TABLE,
+        at: PICK_PLATE,
+        base: [-0.03, -1.54, 2.01],
+        grasp: [0.049_088, 0.274_588, 0.2, -0.295_963, 2.558_943, -0.887_428, 2.138_716],
+        gaps: [0.075, 0.02],
+        straddles: false,
+    },
+    Lift {
+        problem: "bowl",
+        carrier: "shelf",
+        at: [-1.2, 2.29],
+        base: [-1.61, 1.5, 2.27],
+        grasp: [-1.291_359, -0.179_906, -2.05, -0.563_681, -1.068_934, -1.479_549, 2.769_651],
+        gaps: [0.05, 0.005],
+        straddles: true,
+    },
+];

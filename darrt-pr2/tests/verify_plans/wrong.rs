@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use darrt_pr2::arm::Side;
 use darrt_pr2::plan_file::{AllowedContact, ContactReason, PlanFile, Pose, Waypoint};
-use darrt_pr2::problem_file::{GoalState, Limits, Obstacle, PrimitiveName, Region, ShapeSpec, Surface};
+use darrt_pr2::problem_file::{GoalState, Limits, Obstacle, PrimitiveName, Region, ShapeSpec, Surface, Symmetry};
 use darrt_pr2::verify::{Refusal, RefusalKind, verify};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
@@ -12,11 +12,11 @@ use crate::builder::{PLATE, TABLE};
 use crate::plans;
 
 /// Edits the plan and checks what is said; `step` 0 means the plan as a whole.
-fn refused(mut plan: PlanFile, step: usize, kind: RefusalKind, edit: impl FnOnce(&mut PlanFile)) -> Refusal {
+fn refused(mut plan: PlanFile, step: u32, kind: RefusalKind, edit: impl FnOnce(&mut PlanFile)) -> Refusal {
     edit(&mut plan);
     let refusal = verify(&plan).expect_err("the plan is wrong");
     assert_eq!((refusal.step.unwrap_or(0), refusal.kind), (step, kind), "{refusal}");
-    assert_eq!(refusal.primitive, refusal.step.map(|step| plan.steps[step - 1].primitive));
+    assert_eq!(refusal.primitive, refusal.step.map(|step| plan.steps[step as usize - 1].primitive));
     assert!((0.0..=1.0).contains(&refusal.time), "{refusal}");
     refusal
 }
@@ -212,7 +212,7 @@ fn obstacles_in_the_way_are_met() {
         *joint(waypoint(plan, 2, 1), "r_shoulder_lift_joint") = -0.2;
     });
     about(&refusal, "r_", "beam");
-    let shelf = block("shelf", [-0.1, -0.5, 0.85], [0.3, 0.3, 0.02]);
+    let shelf = block("shelf", [-0.2, -0.45, 0.8], [0.2, 0.1, 0.02]);
     let refusal = refused(plans::carry(), 2, K::Collision, |plan| plan.problem.obstacles.push(shelf));
     about(&refusal, PLATE, "shelf");
 }
@@ -387,4 +387,42 @@ fn straight_lines_are_straight() {
     let bend = |at: &mut Waypoint| *joint(at, "r_wrist_roll_joint") += 0.04;
     let refusal = refused(plans::push(), 1, RefusalKind::StraightLine, |plan| bend(waypoint(plan, 1, 2)));
     assert!(refusal.place.is_some(), "{refusal}");
+}
+
+#[test]
+fn the_yaw_counts_for_objects_that_are_not_round() {
+    let plan = |symmetry, yaw| {
+        let mut plan = plans::push();
+        plan.problem.objects[0].symmetry = Some(symmetry);
+        plan.problem.goal.objects[0].yaw = Some(yaw);
+        plan
+    };
+    verify(&plan(Symmetry::Z, 0.2)).unwrap();
+    verify(&plan(Symmetry::None, 0.04)).unwrap();
+    refused(plan(Symmetry::None, 0.2), 0, RefusalKind::Goal, |_| ());
+}
+
+#[test]
+fn objects_do_not_run_into_each_other() {
+    let with_saucer = |y: f64| {
+        let mut plan = plans::push();
+        let mut saucer = plan.problem.objects[0].clone();
+        saucer.name = "saucer".to_owned();
+        saucer.at = [-0.2, y];
+        plan.problem.objects.push(saucer);
+        let pose = Pose { position: [-0.2, y, 0.76], quaternion: [0.0, 0.0, 0.0, 1.0] };
+        let waypoints = plan.steps.iter_mut().flat_map(|step| &mut step.waypoints);
+        for at in waypoints.chain([&mut plan.start]) {
+            at.objects.insert("saucer".to_owned(), pose);
+        }
+        plan
+    };
+    // Both radii are 0.14; the push ends at y = -0.25.
+    verify(&with_saucer(-0.54)).unwrap();
+    let refusal = refused(with_saucer(-0.52), 2, RefusalKind::Collision, |_| ());
+    about(&refusal, PLATE, "saucer");
+    assert!(refusal.time > 0.9, "{refusal}");
+    refused(with_saucer(-0.54), 2, RefusalKind::Stray, |plan| {
+        from_here_on(plan, 2, 9, |at| at.objects.get_mut("saucer").unwrap().position[1] -= 0.01);
+    });
 }

@@ -8,7 +8,7 @@ use rand::{Rng, RngExt};
 
 use super::push::approach;
 use super::retreat::retreat;
-use super::stance::stance;
+use super::stance::{Wanted, stance};
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::grasp::rim::rim_is_graspable;
@@ -51,7 +51,9 @@ pub fn pick<M: Manipulator>(
         }
         fitted += 1;
         let at_grasp = grasp.world_from_tool(pose);
-        if let Some(way) = stance(m, from, &at_grasp, rng, |q| way_of(m, q, &at_grasp, &grasp, movable)) {
+        let tries = m.settings().base_tries.div_ceil(2);
+        let wanted = Wanted { world_from_tool: &at_grasp, gap_m: grasp.open_gap_m, tries };
+        if let Some(way) = stance(m, from, &wanted, rng, |q| way_of(m, q, &at_grasp, &grasp, movable)) {
             return assemble(m, from, object, pose, &grasp, &way, rng);
         }
         if fitted >= m.settings().grasp_tries {

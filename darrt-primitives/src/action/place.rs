@@ -8,7 +8,7 @@ use nalgebra::{Isometry3, Vector3};
 use rand::{Rng, RngExt};
 
 use super::retreat::retreat;
-use super::stance::stance;
+use super::stance::{Wanted, stance};
 use super::travel::travel;
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
@@ -42,16 +42,30 @@ pub fn place<M: Manipulator>(
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
     let held = *from.mode.held().ok_or(Infeasible::NoGrasp)?;
     let surface = m.surface_under(held.object, target, ON_SURFACE_M).ok_or(Infeasible::OffSupport)?;
-    let standing = standing_pose(m, &held, surface, target, rng).ok_or(Infeasible::OffSupport)?;
-    let at_place = standing * held.tool_from_object.inverse();
-
     let directions = &m.settings().place.approach_directions;
     let down = match directions.len() {
         0 => -Vector3::z(),
         n => directions.get(rng.random_range(0..n)).copied().unwrap_or(-Vector3::z()),
     };
-    let way = stance(m, from, &at_place, rng, |q| way_of(m, q, &at_place, &down)).ok_or(Infeasible::Unreachable)?;
-    assemble(m, from, &held, surface, &way, rng)
+    let gap_m = release_gap_m(m, from);
+    for _ in 0..YAW_TRIES {
+        let standing = standing_pose(m, &held, surface, target, rng).ok_or(Infeasible::OffSupport)?;
+        let at_place = standing * held.tool_from_object.inverse();
+        let tries = m.settings().base_tries.div_ceil(3);
+        let wanted = Wanted { world_from_tool: &at_place, gap_m, tries };
+        if let Some(way) = stance(m, from, &wanted, rng, |q| way_of(m, q, &at_place, &down)) {
+            return assemble(m, from, &held, surface, &way, rng);
+        }
+    }
+    Err(Infeasible::Unreachable)
+}
+
+/// How many turns of a round object are tried: the fingers must find room beside the surface.
+const YAW_TRIES: usize = 10;
+
+/// How far the fingers open to let go.
+fn release_gap_m<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>) -> f64 {
+    m.settings().place.release_gap_m.max(from.mode.gap_m())
 }
 
 /// Upright on the surface over the target's x and y.
@@ -99,7 +113,7 @@ fn assemble<M: Manipulator>(
     let base = way.base;
     travel(m, &mut chain, &Configuration { base, arm: *first }, from.mode.gap_m(), rng);
 
-    let gap_m = m.settings().place.release_gap_m.max(from.mode.gap_m());
+    let gap_m = release_gap_m(m, from);
     let after = chain.end.mode.released_on(surface, gap_m).ok_or(Infeasible::NoGrasp)?;
     let waypoints: Vec<_> =
         rest.iter().map(|arm| Waypoint { robot: Configuration { base, arm: *arm }, pushed: 0.0 }).collect();

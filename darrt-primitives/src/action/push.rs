@@ -7,12 +7,12 @@ use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
 use super::retreat::retreat;
-use super::stance::stance;
+use super::stance::{Wanted, stance};
 use super::travel::travel;
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::contact::{HandStance, RimContact};
-use crate::manipulator::{Configuration, Hand, Manipulator};
+use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, TouchReason};
 use crate::push::edge_stop::{EdgeStop, NoPush, PushEnd};
 use crate::tabletop::{Tabletop, TabletopState};
@@ -61,7 +61,8 @@ pub fn push<M: Manipulator>(
     let at_contact =
         contact.world_from_tool(&center, &end.direction, height, &twin).map_err(|_| Infeasible::NoContact)?;
 
-    let way = stance(m, from, &at_contact, rng, |q| way_of(m, q, &at_contact, &end)).ok_or(Infeasible::Unreachable)?;
+    let wanted = Wanted { world_from_tool: &at_contact, gap_m: settings.gap_m, tries: m.settings().base_tries };
+    let way = stance(m, from, &wanted, rng, |q| way_of(m, q, &at_contact, &end)).ok_or(Infeasible::Unreachable)?;
     assemble(m, from, object, pose, &end, &way, rng)
 }
 
@@ -95,6 +96,10 @@ fn way_of<M: Manipulator>(
     // The first step decides most often, so it is tried before anything else.
     let along = line::follow(m, &q.base, &q.arm, at_contact, &(ahead * end.length));
     if along.share * end.length < LEAST_PUSH_M.min(end.length) {
+        return None;
+    }
+    let last = Configuration { base: q.base, arm: *along.arms.last()? };
+    if !m.stances().is_clear(m.manipulator(), &last, settings.gap_m) {
         return None;
     }
     let back = line::follow(m, &q.base, &q.arm, at_contact, &(-ahead * settings.standoff_m));

@@ -10,8 +10,8 @@ use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Mode};
 use crate::tabletop::Tabletop;
 
-/// How often the arm folds to a posture on the way.
-const SHARE_VIA_POSTURE: f64 = 0.75;
+/// How often the arm folds to a posture while the base drives.
+const SHARE_VIA_POSTURE: f64 = 0.8;
 
 /// Moves base and arm to `target`, never both at once, in a random order and often through one of the settings'
 /// postures: the arm folds, the base drives, the arm unfolds. The empty hand opens to `gap_m`.
@@ -24,12 +24,11 @@ pub fn travel<M: Manipulator>(
     gap_m: f64,
     rng: &mut dyn Rng,
 ) {
-    let postures = &m.settings().postures;
     let drives = chain.end.robot.base != target.base;
-    let via = !postures.is_empty() && rng.random_bool(SHARE_VIA_POSTURE);
     let arm_first = drives && rng.random_bool(0.5);
-    if via && let Some(posture) = postures.get(rng.random_range(0..postures.len())) {
-        arm_to(m, chain, posture, gap_m);
+    let posture = if drives && rng.random_bool(SHARE_VIA_POSTURE) { clear_posture(m, chain, target, rng) } else { None };
+    if let Some(posture) = posture {
+        arm_to(m, chain, &posture, gap_m);
         base_to(m, chain, &target.base, gap_m);
         arm_to(m, chain, &target.arm, gap_m);
     } else if arm_first {
@@ -39,6 +38,23 @@ pub fn travel<M: Manipulator>(
         base_to(m, chain, &target.base, gap_m);
         arm_to(m, chain, &target.arm, gap_m);
     }
+}
+
+/// One of the postures, at random, in which the robot keeps clear of itself and of the support surfaces both where it
+/// stands and where it goes.
+fn clear_posture<M: Manipulator>(
+    m: &Tabletop<M>,
+    chain: &Chain<M>,
+    target: &Configuration<M::Joints>,
+    rng: &mut dyn Rng,
+) -> Option<M::Joints> {
+    let is_clear = |base: [f64; 3], arm: M::Joints| {
+        m.stances().is_clear(m.manipulator(), &Configuration { base, arm }, chain.end.mode.gap_m())
+    };
+    let postures = &m.settings().postures;
+    let first = if postures.is_empty() { 0 } else { rng.random_range(0..postures.len()) };
+    let turned = postures.iter().cycle().skip(first).take(postures.len());
+    turned.copied().find(|arm| is_clear(chain.end.robot.base, *arm) && is_clear(target.base, *arm))
 }
 
 /// Moves the arm in a straight line in joint space; nothing if it is already there.

@@ -159,6 +159,8 @@ pub struct Bench {
     pub objects: Vec<Sketch>,
     /// [`Domain::reach`], by the configurations of robot and object.
     pub reach: fn(&Config, &Config) -> f64,
+    /// [`Domain::reach_from`], by the working point and the configuration of the object.
+    pub reach_from: fn([f64; 3], &Config) -> f64,
     /// [`Domain::hop`], by the configurations of the two objects.
     pub hop: fn(&Config, &Config) -> f64,
     /// [`Domain::component_name`].
@@ -168,7 +170,14 @@ pub struct Bench {
 impl Default for Bench {
     fn default() -> Self {
         let along = |a: &Config, b: &Config| (a[0] - b[0]).abs();
-        Self { robot: Sketch::default(), objects: vec![Sketch::default(); 2], reach: along, hop: along, name }
+        Self {
+            robot: Sketch::default(),
+            objects: vec![Sketch::default(); 2],
+            reach: along,
+            reach_from: |point, at| (point[0] - at[0]).abs(),
+            hop: along,
+            name,
+        }
     }
 }
 
@@ -200,6 +209,14 @@ impl Domain for Bench {
 
     fn reach(&self, robot: &Config, _: ObjectId, at: &Config) -> f64 {
         (self.reach)(robot, at)
+    }
+
+    fn working_point(&self, robot: &Config) -> [f64; 3] {
+        [robot[0], 0.0, 0.0]
+    }
+
+    fn reach_from(&self, working_point: [f64; 3], _: &Config, _: ObjectId, at: &Config) -> f64 {
+        (self.reach_from)(working_point, at)
     }
 
     fn hop(&self, from: (ObjectId, &Config), to: (ObjectId, &Config)) -> f64 {
@@ -267,13 +284,16 @@ impl Primitive<Bench> for Act {
     }
 }
 
+/// [`Validity::check`] without its receiver, with the wall first.
+pub type Check = fn((f64, f64), &State<Bench>, ComponentSet) -> Result<(), Blame>;
+
 /// A validity made of functions; [`Rule::default`] is the honest one.
 #[derive(Debug, Clone, Copy)]
 pub struct Rule {
     /// The robot may not be on `[wall.0, wall.1]` metres of the rail.
     pub wall: (f64, f64),
     /// [`Validity::check`], with the wall first.
-    pub check: fn((f64, f64), &State<Bench>, ComponentSet) -> Result<(), Blame>,
+    pub check: Check,
     /// [`Validity::free_prefix`].
     pub free_prefix: fn(&Self, &Bench, &Instance<Bench>, &State<Bench>) -> FreePrefix,
 }

@@ -57,7 +57,13 @@ fn options() -> SolveOptions {
 fn check(change: impl FnOnce(&mut Parts<Bench>), sampler: Box<dyn Sampler<Bench>>) -> Result<(), Broken> {
     let mut parts = parts();
     change(&mut parts);
-    let strategy = Strategy { sampler, distance: Box::new(Euclidean), extend: ExtendOptions::default() };
+    let strategy = Strategy {
+        sampler,
+        distance: Box::new(Euclidean),
+        extend: ExtendOptions::default(),
+        reroute: None,
+        try_penalty_m: 0.0,
+    };
     match Problem::new(parts) {
         Ok(problem) => check_planner(&problem, &strategy, &options()),
         Err(error) => Err(Broken::new("planner.problem: the problem is well formed", error.to_string(), "no error")),
@@ -95,7 +101,7 @@ fn trees() -> Vec<Case> {
                         free_prefix: |_, _, _, _| FreePrefix::FREE,
                         wall: (1.2, 1.3),
                         ..Rule::default()
-                    })
+                    });
                 },
                 Box::new(Full),
             )
@@ -186,8 +192,13 @@ fn books_of(buckets: &[Bucket]) -> Result<(), Broken> {
 fn cancelled(is_deaf: bool) -> Result<(), Broken> {
     let mut parts = parts();
     parts.goal = Box::new(Reach::new(robot_at([3.5, 0.0])));
-    let strategy =
-        Strategy { sampler: Box::new(Full), distance: Box::new(Euclidean), extend: ExtendOptions::default() };
+    let strategy = Strategy {
+        sampler: Box::new(Full),
+        distance: Box::new(Euclidean),
+        extend: ExtendOptions::default(),
+        reroute: None,
+        try_penalty_m: 0.0,
+    };
     let problem = Problem::new(parts)
         .map_err(|error| Broken::new("planner.problem: the problem is well formed", error.to_string(), "no error"))?;
     check_cancel(

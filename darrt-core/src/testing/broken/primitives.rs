@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use rand::RngExt;
 
 use super::Case;
-use super::bench::{Act, Bench, Propagate, Rule, Tag, cart, cart_at, robot_at, state};
+use super::bench::{Act, Bench, Propagate, Rule, cart, cart_at, robot_at, state};
 use super::motions::{drag, go, instance};
 use crate::laws::primitive::{
     APPROACH, CHAINED, CONTACTS, ENDS, NOT_EMPTY, PANICS, PROGRESS, SEEDED, TRUNCATED, UNNAMED, UNTOUCHED, USEFUL_MET,
@@ -157,11 +157,8 @@ fn choices() -> Vec<Case> {
         }),
         case("writes to its input", "marks the mode of the state that it was given", UNTOUCHED, || {
             going(|m, from, to, _| {
-                let instances = vec![go(m, from, to.robot_overlay(m, &from.robot))];
-                from.mode.overwrite(0);
-                from.mode.overwrite(if instances.len() == 1 { 9 } else { 0 });
-                let clean = State { mode: Tag::new(9), ..from.clone() };
-                Ok(vec![go(m, &clean, to.robot_overlay(m, &from.robot))])
+                from.mode.overwrite(9);
+                Ok(vec![go(m, from, to.robot_overlay(m, &from.robot))])
             })
         }),
         case("free group as target", "goes to the heading of a target that names the position alone", UNNAMED, || {

@@ -263,12 +263,18 @@ fn subset(robot: Sketch) -> Result<(), Broken> {
 }
 
 fn domains() -> Vec<Case> {
-    use laws::domain::{COUNT, HOP, NAMES, REACH};
+    use laws::domain::{COUNT, HOP, NAMES, REACH, REACH_FROM};
     let case = |name, wrong, law, broken| Case { name, wrong, law, broken, honest: || domain(&Bench::default()) };
     vec![
         case("inside the object", "reach subtracts the radius of the object, and is negative inside it", REACH, || {
             domain(&Bench { reach: |robot, at| (robot[0] - at[0]).abs() - 5.0, ..Bench::default() })
         }),
+        case(
+            "another working point",
+            "the short cut measures in the plane, the long way along the rail",
+            REACH_FROM,
+            || domain(&Bench { reach_from: |point, at| (point[0] - at[0]).hypot(at[1] / 10.0), ..Bench::default() }),
+        ),
         case("normalised hop", "divides by the distance of two objects at the same place", HOP, || {
             domain(&Bench { hop: |a, b| (a[0] - b[0]).powi(2) / (a[0] - b[0]).abs(), ..Bench::default() })
         }),

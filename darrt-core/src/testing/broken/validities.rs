@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::Case;
-use super::bench::{Bench, Rule, TOUCH_M, blame, check as honest_check, scan, state};
+use super::bench::{Bench, Check, Rule, TOUCH_M, blame, check as honest_check, scan, state};
 use super::motions::{drag, go};
 use crate::laws::validity::{
     BLAME_NAMES, BLAME_REAL, BLAME_TEXT, CUT, ENLARGED, EXEMPTIONS, FRACTION, ONE_BY_ONE, ORACLE, PURE,
@@ -205,9 +205,7 @@ fn pairs() -> Vec<Case> {
     ]
 }
 
-fn enlarged(
-    rule: fn((f64, f64), &State<Bench>, ComponentSet) -> Result<(), crate::validity::Blame>,
-) -> Result<(), Broken> {
+fn enlarged(rule: Check) -> Result<(), Broken> {
     let small = Rule { check: rule, ..Rule::default() };
     let large = Rule { wall: (0.5, 2.0), ..small };
     let check = |x: f64| {

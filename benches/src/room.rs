@@ -1,0 +1,100 @@
+//! The PR2 in the scene of Plate3.
+
+use darrt_core::domain::Domain as _;
+use darrt_core::search::{Darrt, Strategy};
+use darrt_core::space::ComponentSpace as _;
+use darrt_core::state::State;
+use darrt_geom::oracle::PosedBody;
+use darrt_geom::{Body, Scene};
+use darrt_pr2::planning::{Prepared, prepare, strategy};
+use darrt_pr2::problem_file::{ProblemFile, builtin};
+use darrt_pr2::world::{Built, World, WorldState, build};
+use darrt_primitives::manipulator::Manipulator as _;
+use darrt_primitives::validity::{SceneValidity, ValidityOptions};
+use nalgebra::Isometry3;
+
+use crate::stream;
+
+/// The problem file.
+pub fn plate3() -> ProblemFile {
+    builtin("plate3").unwrap()
+}
+
+/// The room, its collision check, and states to ask about.
+#[derive(Debug)]
+pub struct Room {
+    /// The PR2 and the plate.
+    pub world: World,
+    /// Tables and obstacles.
+    pub scene: Scene,
+    /// The planner's check.
+    pub validity: SceneValidity,
+    start: WorldState,
+}
+
+impl Room {
+    /// The room of Plate3.
+    pub fn new() -> Self {
+        let Built { world, start, scene, .. } = build(&plate3()).unwrap();
+        let validity = SceneValidity::new(&world, scene.bodies(), ValidityOptions::default()).unwrap();
+        Self { world, scene, validity, start }
+    }
+
+    /// `count` states with robot and plate anywhere in their spaces, colliding ones among them.
+    pub fn states(&self, count: u64) -> Vec<WorldState> {
+        let draw = |index| {
+            let rng = &mut stream(index);
+            State {
+                robot: self.world.robot().sample(rng),
+                objects: self.world.objects().iter().map(|space| space.sample(rng)).collect(),
+                mode: self.start.mode.clone(),
+            }
+        };
+        (0..count).map(draw).collect()
+    }
+
+    /// World poses of links and objects: what the collision model calls its moving bodies.
+    pub fn moving_poses(&self, state: &WorldState) -> Vec<Isometry3<f64>> {
+        let robot = self.world.manipulator();
+        let mut poses = vec![Isometry3::identity(); robot.links().len()];
+        robot.link_poses(&state.robot, state.mode.gap_m(), &mut poses);
+        poses.extend(state.objects.iter().copied());
+        poses
+    }
+
+    /// Every body at its pose, in the order of the collision model: links, objects, fixed bodies.
+    pub fn posed(&self, state: &WorldState) -> Vec<PosedBody<'_>> {
+        let robot = self.world.manipulator();
+        let links = robot.links().iter().map(|link| &link.body);
+        let objects = self.world.movables().iter().map(|movable| &movable.body);
+        let posed = |(body, world_from_body): (_, Isometry3<f64>)| PosedBody { body, world_from_body };
+        let moving: Vec<&Body> = links.chain(objects).collect();
+        let moving = moving.into_iter().zip(self.moving_poses(state)).map(posed);
+        let fixed = self.scene.bodies().iter().map(|fixed| posed((&fixed.body, fixed.world_from_body)));
+        moving.chain(fixed).collect()
+    }
+}
+
+impl Default for Room {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Plate3 ready for planning, with the strategy of its file.
+pub fn prepared() -> (Prepared, Strategy<World>) {
+    let file = plate3();
+    let strategy = strategy(&file.sampling, file.sampling.sampler, file.sampling.distance).unwrap();
+    (prepare(&file).unwrap(), strategy)
+}
+
+/// States of a tree that has grown for `iterations`, at most `count`, spread over the tree.
+pub fn grown(prepared: &Prepared, strategy: &Strategy<World>, iterations: u64, count: usize) -> Vec<WorldState> {
+    let mut darrt = Darrt::new(&prepared.problem, strategy, 2012, 0, usize::MAX);
+    for _ in 0..iterations {
+        darrt.step();
+    }
+    let tree = darrt.tree();
+    let apart = tree.len().div_ceil(count);
+    tree.iter().step_by(apart).map(|(_, node)| node.state.clone()).collect()
+}

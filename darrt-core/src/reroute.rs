@@ -1,0 +1,32 @@
+//! A way around: what an extension may try when the straight motion of a transit is blocked.
+//!
+//! The paper names this as where most of the planning time goes (section 6.2, figure 7b): the hand must get around the
+//! plate. PATH does not see obstacles, so the way around is looked for here, between PATH and the collision check.
+
+use rand::Rng;
+
+use crate::domain::Domain;
+use crate::motion::Instance;
+use crate::state::State;
+use crate::validity::Validity;
+
+/// Finds another motion between the ends of a blocked one.
+///
+/// # Laws
+/// The result starts at `from` and ends where `instance` ends, bit for bit; it moves the same components and touches
+/// nothing more. Pure but for `rng`.
+pub trait Reroute<D: Domain>: Send + Sync {
+    /// May this instance go any way between its ends? A transit may; a push, an approach or a pick may not.
+    fn is_free_to_turn(&self, instance: &Instance<D>) -> bool;
+
+    /// Another instance with the same ends as `instance`, which begins at `from` and is blocked. `None` if the instance
+    /// must go as it does (a push, an approach), or if no way was found with the effort allowed.
+    fn reroute(
+        &self,
+        m: &D,
+        validity: &dyn Validity<D>,
+        instance: &Instance<D>,
+        from: &State<D>,
+        rng: &mut dyn Rng,
+    ) -> Option<Instance<D>>;
+}

@@ -1,0 +1,43 @@
+//! Joint limits, and the bounds of base and objects.
+
+use super::Judge;
+use crate::verify::motion::State;
+use crate::verify::refusal::RefusalKind;
+
+impl Judge<'_> {
+    /// Joint limits of a waypoint, bounds of base and objects.
+    pub(super) fn check_limits(&self, state: &State) -> Result<(), (RefusalKind, String)> {
+        let slack = self.options.rounding;
+        for (i, (value, limit)) in state.joints.iter().zip(&self.robot.limits).enumerate() {
+            if *value < limit.lower - slack || *value > limit.upper + slack {
+                let (name, low, high) = (self.robot.joint_name(i), limit.lower, limit.upper);
+                return Err((RefusalKind::Joints, format!("`{name}` is {value}, its limits are [{low}, {high}]")));
+            }
+        }
+        let bounds = &self.plan.problem.bounds;
+        for (axis, value, [low, high]) in [("x", state.base[0], bounds.base_x), ("y", state.base[1], bounds.base_y)] {
+            if value < low - slack || value > high + slack {
+                return Err((
+                    RefusalKind::Bounds,
+                    format!("the base's {axis} is {value}, its bounds are [{low}, {high}]"),
+                ));
+            }
+        }
+        (0..state.objects.len())
+            .try_for_each(|object| self.check_object_bounds(object, state))
+            .map_err(|text| (RefusalKind::Bounds, text))
+    }
+
+    pub(super) fn check_object_bounds(&self, object: usize, state: &State) -> Result<(), String> {
+        let Some(pose) = state.objects.get(object) else { return Ok(()) };
+        let (bounds, slack) = (&self.plan.problem.bounds, self.options.rounding);
+        let ranges = [("x", bounds.object_x), ("y", bounds.object_y), ("z", bounds.object_z)];
+        for ((axis, [low, high]), value) in ranges.into_iter().zip(pose.translation.vector.iter()) {
+            if *value < low - slack || *value > high + slack {
+                let name = self.world.object_name(object);
+                return Err(format!("the {axis} of {name} is {value}, its bounds are [{low}, {high}]"));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,116 @@
+//! One moment of a step: where the objects are, and everything that must hold then.
+
+use nalgebra::{Isometry3, Point2, Vector2};
+
+use super::{Judge, Trial};
+use crate::verify::mode::Mode;
+use crate::verify::motion::{Segment, State};
+use crate::verify::refusal::{Refusal, RefusalKind, Site};
+use crate::verify::stage::Hit;
+
+impl<'a> Judge<'a> {
+    /// Puts the objects where they are at `s`: held ones by the hand, pushed ones along their way.
+    pub(super) fn move_objects(&self, trial: &Trial<'a>, segment: &Segment<'_>, s: f64, now: &mut State) {
+        if let Some(holding) = trial.act.holding
+            && let Some(pose) = now.objects.get_mut(holding.object)
+        {
+            *pose = self.links[self.robot.tool] * holding.tool_from_object;
+        }
+        if let Some(object) = trial.act.pushed
+            && let (Some(pose), Some(slid)) = (now.objects.get_mut(object), segment.slid(object, s))
+        {
+            *pose = slid;
+        }
+    }
+
+    /// At a waypoint the file must put a held object where the hand has it.
+    pub(super) fn check_rigid(
+        &self,
+        trial: &Trial<'a>,
+        time: f64,
+        now: &State,
+        waypoint: &State,
+    ) -> Result<(), Refusal> {
+        let Some(holding) = trial.act.holding else { return Ok(()) };
+        let (Some(here), Some(written)) = (now.objects.get(holding.object), waypoint.objects.get(holding.object))
+        else {
+            return Ok(());
+        };
+        let distance = (here.translation.vector - written.translation.vector).norm();
+        let angle = here.rotation.angle_to(&written.rotation);
+        if distance <= self.options.rigid_m && angle <= self.options.rigid_rad {
+            return Ok(());
+        }
+        let name = self.world.object_name(holding.object);
+        let text = format!("{name} is {distance:.6} m and {angle:.6} rad from where the hand holds it");
+        Err(trial.site.refusal(time, RefusalKind::Grasp, text).at(&written.translation.vector.into()))
+    }
+
+    /// Everything about one state of a step.
+    pub(super) fn check_state(
+        &mut self,
+        trial: &Trial<'a>,
+        time: f64,
+        now: &State,
+        way: Option<Vector2<f64>>,
+    ) -> Result<(), Refusal> {
+        let site = trial.site;
+        if let (Some(core), Some(object)) = (&trial.core, trial.act.pushed) {
+            core.check_depth(site, time, &self.robot, &self.stage, object)?;
+            self.check_on_surface(site, time, object, now)?;
+            if let Some(way) = way {
+                core.check_contact(site, time, &self.robot, &self.stage, object, &way, self.options)?;
+            }
+        }
+        if let Some(holding) = trial.act.holding {
+            self.check_object_bounds(holding.object, now)
+                .map_err(|text| site.refusal(time, RefusalKind::Bounds, text))?;
+        }
+        if let Some([start, end]) = &trial.line {
+            self.check_line(site, time, start, end)?;
+        }
+        self.stage.check(site.step, time).map_err(|hit| {
+            let Hit { names: (a, b), place } = hit;
+            site.refusal(time, RefusalKind::Collision, format!("{a} and {b} collide")).about(&a, &b).at(&place)
+        })
+    }
+
+    /// A pushed object does not leave its surface.
+    pub(super) fn check_on_surface(&self, site: Site, time: f64, object: usize, now: &State) -> Result<(), Refusal> {
+        let (Some(Mode::Resting { surface }), Some(pose)) = (self.modes.get(object), now.objects.get(object)) else {
+            return Ok(());
+        };
+        let Some(surface) = self.world.surface(*surface) else { return Ok(()) };
+        let inside = surface.depth(&Point2::from(pose.translation.vector.xy()));
+        if inside >= 0.0 {
+            return Ok(());
+        }
+        let (name, plane) = (self.world.object_name(object), surface.name());
+        let text = format!("the centre of {name} is {:.4} m beside `{plane}`", -inside);
+        Err(site.refusal(time, RefusalKind::Support, text).about(name, plane).at(&pose.translation.vector.into()))
+    }
+
+    pub(super) fn check_line(
+        &self,
+        site: Site,
+        time: f64,
+        start: &Isometry3<f64>,
+        end: &Isometry3<f64>,
+    ) -> Result<(), Refusal> {
+        let tool = &self.links[self.robot.tool];
+        let (from, way) = (start.translation.vector, end.translation.vector - start.translation.vector);
+        let gone = tool.translation.vector - from;
+        let share = if way.norm() > 0.0 { (gone.dot(&way) / way.norm_squared()).clamp(0.0, 1.0) } else { 0.0 };
+        let beside = (gone - way * share).norm();
+        let turned = tool.rotation.angle_to(&start.rotation);
+        if beside <= self.options.line_m && turned <= self.options.line_rad {
+            return Ok(());
+        }
+        let text = format!(
+            "the tool is {beside:.4} m beside its straight line and turned by {turned:.4} rad, at most {} m and {:.4} rad \
+             are straight",
+            self.options.line_m, self.options.line_rad
+        );
+        Err(site.refusal(time, RefusalKind::StraightLine, text).at(&tool.translation.vector.into()))
+    }
+}

@@ -1,0 +1,115 @@
+//! `darrt plan` and `darrt check` from outside.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn darrt(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_darrt")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// Runs, expects this exit code, returns what was printed and what was complained about.
+fn run(folder: &Path, arguments: &[&str], expected: i32) -> (String, String) {
+    let output = darrt(folder, arguments);
+    let (printed, complaint) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(expected), "{arguments:?}: {complaint}");
+    assert!(!complaint.contains("panicked"), "{complaint}");
+    (printed, complaint)
+}
+
+/// Plate1 with a goal that holds already: solved before the first iteration.
+fn solved_problem(folder: &Path) {
+    let text = darrt_pr2::problem_file::builtin_text("plate1").unwrap();
+    let (head, tail) = text.split_once("on = \"side table\"\nat = [-2.165, -1.115]").unwrap();
+    let text = format!("{head}on = \"central table\"\nat = [-0.20, 0.05]{tail}");
+    std::fs::write(folder.join("easy.toml"), text).unwrap();
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_plan_is_printed_written_drawn_and_accepted() {
+    let folder = tempfile::tempdir().unwrap();
+    solved_problem(folder.path());
+    let (printed, complaint) = run(folder.path(), &["plan", "easy.toml", "--seed", "3"], 0);
+    for words in ["solved in", "seed 3", "primitive", "waypoints", "verified: ", "plate1.plan.json", "plate1.html"] {
+        assert!(printed.contains(words), "{words}: {printed}");
+    }
+    assert_eq!(complaint, "", "quiet when piped");
+    assert_eq!(files(folder.path()), ["easy.toml", "plate1.html", "plate1.plan.json"]);
+    let (printed, _) = run(folder.path(), &["check", "plate1.plan.json"], 0);
+    assert!(printed.contains("plate1.plan.json: accepted"), "{printed}");
+    let (printed, _) = run(folder.path(), &["show", "plate1.plan.json", "-o", "again.html"], 0);
+    assert!(printed.contains("again.html"));
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(read("again.html"), read("plate1.html"));
+}
+
+#[test]
+fn one_seed_gives_one_file() {
+    let folder = tempfile::tempdir().unwrap();
+    solved_problem(folder.path());
+    for name in ["a.json", "b.json"] {
+        let (printed, _) = run(folder.path(), &["plan", "easy.toml", "-o", name, "--no-picture", "--quiet"], 0);
+        assert_eq!(printed, "");
+    }
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(read("a.json"), read("b.json"));
+    assert_eq!(files(folder.path()), ["a.json", "b.json", "easy.toml"]);
+}
+
+#[test]
+fn an_edited_plan_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    solved_problem(folder.path());
+    run(folder.path(), &["plan", "easy.toml", "-o", "p.json", "--no-picture"], 0);
+    let path = folder.path().join("p.json");
+    let mut plan: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    plan["start"]["base"][0] = serde_json::json!(-0.7);
+    std::fs::write(&path, plan.to_string()).unwrap();
+    let (printed, complaint) = run(folder.path(), &["check", "p.json"], 3);
+    assert!(printed.is_empty() && complaint.starts_with("error: p.json: refused: "), "{complaint}");
+}
+
+#[test]
+fn a_budget_that_ends_is_explained() {
+    let folder = tempfile::tempdir().unwrap();
+    let (printed, complaint) = run(folder.path(), &["plan", "plate3", "--iterations", "3", "--stats"], 1);
+    for words in ["plate3: no plan found (seed 0)", "iteration limit reached", "nearest to the goal", "--stats"] {
+        assert!(complaint.contains(words), "{words}: {complaint}");
+    }
+    assert!(printed.contains("Every extension ends in one row") && printed.contains("3 extensions"), "{printed}");
+    assert!(files(folder.path()).is_empty(), "nothing is written without a plan");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_the_search_and_is_reported() {
+    use std::process::Stdio;
+    let folder = tempfile::tempdir().unwrap();
+    let child = Command::new(env!("CARGO_BIN_EXE_darrt"))
+        .current_dir(folder.path())
+        .args(["plan", "plate3", "--seed", "1", "--time-limit", "600", "--restart", "1"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A restart after every iteration keeps the search from ever getting anywhere; the handler is set within moments.
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("cancelled after"), "{}", text(&output.stderr));
+    assert!(files(folder.path()).is_empty());
+}

@@ -1,0 +1,277 @@
+//! A way around for arm or base: a small bidirectional search between the ends of a blocked transit or transfer.
+//!
+//! # Source
+//! Kuffner, LaValle, RRT-Connect: an efficient approach to single-query path planning, ICRA 2000.
+
+use darrt_core::domain::Domain;
+use darrt_core::motion::Instance;
+use darrt_core::reroute::Reroute;
+use darrt_core::space::ComponentSpace;
+use darrt_core::validity::Validity;
+use nalgebra::Isometry3;
+use rand::{Rng, RngExt};
+
+use crate::action::label;
+use crate::arm_motion::{ArmMotion, Carried, Waypoint};
+use crate::manipulator::{Configuration, Manipulator};
+use crate::mode::{Contacts, Mode};
+use crate::tabletop::{Tabletop, TabletopState};
+
+/// How hard the search tries.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Detour {
+    /// Straight motions that are checked before it gives up.
+    pub arm_checks: usize,
+    /// The same for the base, whose space is smaller.
+    pub base_checks: usize,
+    /// Longest straight motion, metres of travel bound.
+    pub step_m: f64,
+    /// Shortcuts that are tried on the way found.
+    pub shortcuts: usize,
+}
+
+impl Default for Detour {
+    fn default() -> Self {
+        Self { arm_checks: 60, base_checks: 40, step_m: 3.0, shortcuts: 6 }
+    }
+}
+
+/// Which part of the robot moves; the other one stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Arm,
+    Base,
+}
+
+/// One of the two trees: configurations and the index of their parents.
+#[derive(Debug)]
+struct Grove<J> {
+    nodes: Vec<(Configuration<J>, usize)>,
+}
+
+/// The search between two ends.
+struct Search<'a, M: Manipulator> {
+    m: &'a Tabletop<M>,
+    validity: &'a dyn Validity<Tabletop<M>>,
+    from: &'a TabletopState<M>,
+    mode: Mode,
+    label: &'static str,
+    template: &'a Instance<Tabletop<M>>,
+    part: Part,
+    checks_left: usize,
+    step_m: f64,
+}
+
+impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
+    fn is_free_to_turn(&self, instance: &Instance<Tabletop<M>>) -> bool {
+        // Not an approach, a push, a pick or a place.
+        let free = [label::ARM_TRANSIT, label::ARM_RIGID_TRANSFER, label::BASE_TRANSIT, label::BASE_RIGID_TRANSFER];
+        instance.reversible && free.contains(&instance.label) && instance.contacts == Contacts::default()
+    }
+
+    fn reroute(
+        &self,
+        m: &Tabletop<M>,
+        validity: &dyn Validity<Tabletop<M>>,
+        instance: &Instance<Tabletop<M>>,
+        from: &TabletopState<M>,
+        rng: &mut dyn Rng,
+    ) -> Option<Instance<Tabletop<M>>> {
+        if !Reroute::<Tabletop<M>>::is_free_to_turn(self, instance) {
+            return None;
+        }
+        let end = instance.at(m, 1.0, from);
+        let inside = instance.at(m, f64::MIN_POSITIVE, from);
+        let part = match (end.robot.base == from.robot.base, end.robot.arm == from.robot.arm) {
+            (true, false) => Part::Arm,
+            (false, true) => Part::Base,
+            _ => return None,
+        };
+        let checks_left = if part == Part::Arm { self.arm_checks } else { self.base_checks };
+        let mut search = Search {
+            m,
+            validity,
+            from,
+            mode: inside.mode,
+            label: instance.label,
+            template: instance,
+            part,
+            checks_left,
+            step_m: self.step_m,
+        };
+        // An end that is itself too near to something cannot be left, whichever way.
+        validity.check(m, &search.state_at(&from.robot), &Contacts::default()).ok()?;
+        let mut way = search.connect(&from.robot, &end.robot, rng)?;
+        search.shorten(&mut way, self.shortcuts, rng);
+        let waypoints: Vec<_> = way.iter().skip(1).map(|q| Waypoint { robot: *q, pushed: 0.0 }).collect();
+        Some(search.instance(from, &waypoints))
+    }
+}
+
+impl<M: Manipulator> Search<'_, M> {
+    /// The state with the robot at `q` and what it holds in its hand.
+    fn state_at(&self, q: &Configuration<M::Joints>) -> TabletopState<M> {
+        let mut state = self.from.clone();
+        state.robot = *q;
+        state.mode = self.mode.clone();
+        if let Some(held) = self.mode.held()
+            && q != &self.from.robot
+            && let Some(pose) = state.objects.get_mut(held.object.index())
+        {
+            let world_from_object: Isometry3<f64> = self.m.manipulator().world_from_tool(q) * held.tool_from_object;
+            *pose = world_from_object;
+        }
+        state
+    }
+
+    fn instance(
+        &self,
+        start: &TabletopState<M>,
+        waypoints: &[Waypoint<M::Joints>],
+    ) -> Instance<Tabletop<M>> {
+        let carried = self.mode.held().map_or(Carried::Nothing, |held| Carried::Held(*held));
+        let motion = ArmMotion::new(self.m, start, waypoints, carried, self.mode.clone(), self.mode.clone());
+        Instance {
+            label: self.label,
+            motion: Box::new(motion),
+            contacts: Contacts::default(),
+            moves: self.template.moves,
+            object: self.template.object,
+            reversible: true,
+        }
+    }
+
+    /// How far the straight way from `a` to `b` is free, in `[0, 1]`.
+    fn free_share(&mut self, a: &Configuration<M::Joints>, b: &Configuration<M::Joints>) -> f64 {
+        self.checks_left = self.checks_left.saturating_sub(1);
+        let start = self.state_at(a);
+        let instance = self.instance(&start, &[Waypoint { robot: *b, pushed: 0.0 }]);
+        let free = self.validity.free_prefix(self.m, &instance, &start);
+        if free.blame.is_none() { 1.0 } else { free.fraction }
+    }
+
+    /// A random configuration of the part that moves: a posture now and then, else anywhere.
+    fn sample(&self, a: &Configuration<M::Joints>, b: &Configuration<M::Joints>, rng: &mut dyn Rng) -> Configuration<M::Joints> {
+        let mut q = self.m.robot().sample(rng);
+        let postures = &self.m.settings().postures;
+        match self.part {
+            Part::Base => q.arm = a.arm,
+            Part::Arm => {
+                q.base = a.base;
+                if !postures.is_empty() && rng.random_bool(0.15) {
+                    if let Some(posture) = postures.get(rng.random_range(0..postures.len())) {
+                        q.arm = *posture;
+                    }
+                } else if rng.random_bool(0.5) {
+                    // Around the straight way: most obstacles are passed by a small excursion.
+                    let s = rng.random_range(0.0..1.0);
+                    let on_line = self.m.robot().interpolate(a, b, s);
+                    q = self.m.robot().interpolate(&on_line, &q, 0.35);
+                }
+            }
+        }
+        q
+    }
+
+    fn connect(
+        &mut self,
+        from: &Configuration<M::Joints>,
+        to: &Configuration<M::Joints>,
+        rng: &mut dyn Rng,
+    ) -> Option<Vec<Configuration<M::Joints>>> {
+        let mut near = Grove { nodes: vec![(*from, 0)] };
+        let mut far = Grove { nodes: vec![(*to, 0)] };
+        let mut swapped = false;
+        while self.checks_left > 0 {
+            let q = self.sample(from, to, rng);
+            let (active, other) = if swapped { (&mut far, &mut near) } else { (&mut near, &mut far) };
+            if let Some(grown) = self.grow(active, &q) {
+                let target = active.nodes.get(grown)?.0;
+                let met = self.reach(other, &target);
+                if let Some(met) = met {
+                    let (a, b) = if swapped { (met, grown) } else { (grown, met) };
+                    let mut way = near.back_from(a);
+                    way.reverse();
+                    way.extend(far.back_from(b).into_iter().skip(1));
+                    return Some(way);
+                }
+            }
+            swapped = !swapped;
+        }
+        None
+    }
+
+    /// One straight motion from the nearest node of `grove` towards `q`, at most a step long. The index of the new node.
+    fn grow(&mut self, grove: &mut Grove<M::Joints>, q: &Configuration<M::Joints>) -> Option<usize> {
+        let parent = grove.nearest(self.m, q)?;
+        let at = grove.nodes.get(parent)?.0;
+        let held_reach_m = self.m.held_reach_m(&self.mode);
+        let length = self.m.manipulator().travel_m(&at, q, held_reach_m);
+        let target = if length > self.step_m { self.m.robot().interpolate(&at, q, self.step_m / length) } else { *q };
+        // What stops short is kept only if it got anywhere worth the node.
+        const WORTH: f64 = 0.1;
+        let share = self.free_share(&at, &target);
+        if share < WORTH {
+            return None;
+        }
+        let reached = if share >= 1.0 { target } else { self.m.robot().interpolate(&at, &target, share) };
+        grove.nodes.push((reached, parent));
+        Some(grove.nodes.len() - 1)
+    }
+
+    /// Grows `grove` to `q` as far as it goes; the index of the node at `q` if it gets there.
+    fn reach(&mut self, grove: &mut Grove<M::Joints>, q: &Configuration<M::Joints>) -> Option<usize> {
+        while self.checks_left > 0 {
+            let grown = self.grow(grove, q)?;
+            let here = grove.nodes.get(grown)?.0;
+            if here == *q {
+                return Some(grown);
+            }
+            let from = grove.nodes.get(grove.nodes.get(grown)?.1)?.0;
+            // Blocked before the end of its step: the way is not free.
+            let held_reach_m = self.m.held_reach_m(&self.mode);
+            if self.m.manipulator().travel_m(&from, &here, held_reach_m) < 0.99 * self.step_m {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// Drops waypoints between which the straight way is free.
+    fn shorten(&mut self, way: &mut Vec<Configuration<M::Joints>>, tries: usize, rng: &mut dyn Rng) {
+        for _ in 0..tries {
+            if way.len() < 3 {
+                return;
+            }
+            let i = rng.random_range(0..way.len() - 2);
+            let j = rng.random_range(i + 2..way.len());
+            let (Some(a), Some(b)) = (way.get(i).copied(), way.get(j).copied()) else { return };
+            if self.free_share(&a, &b) >= 1.0 {
+                way.drain(i + 1..j);
+            }
+        }
+    }
+}
+
+impl<J: Copy> Grove<J> {
+    fn nearest<M: Manipulator<Joints = J>>(&self, m: &Tabletop<M>, q: &Configuration<J>) -> Option<usize>
+    where
+        J: crate::manipulator::JointVector,
+    {
+        let distances = self.nodes.iter().map(|(node, _)| m.robot().distance(node, q));
+        distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0))).map(|(i, _)| i)
+    }
+
+    /// The configurations from node `index` back to the root.
+    fn back_from(&self, mut index: usize) -> Vec<Configuration<J>> {
+        let mut way = Vec::new();
+        while let Some((q, parent)) = self.nodes.get(index) {
+            way.push(*q);
+            if *parent == index {
+                break;
+            }
+            index = *parent;
+        }
+        way
+    }
+}
