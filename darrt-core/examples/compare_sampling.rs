@@ -27,7 +27,8 @@ fn main() -> Result<(), Error> {
                 sampler: Box::new(GoalBiased::new(sampler(sampling)?, 0.2)?),
                 distance: Box::new(GreedyVisit),
                 extend: ExtendOptions::default(),
-        reroute: None, try_penalty_m: 0.0,
+                reroute: None,
+                try_penalty_m: 0.0,
             };
             let mut needed: Vec<u64> = (0..seeds).filter_map(|seed| iterations(&problem, &strategy, seed)).collect();
             needed.sort_unstable();

@@ -28,11 +28,14 @@ pub struct ExtendOptions {
     /// Metres of travel by which a blocked motion is cut shorter than it is free; at least 0. States that almost touch
     /// what blocked them are the nearest to every target behind it, and nothing can be reached from them.
     pub back_off_m: f64,
+    /// How many paths are drawn for one extension, at least 1: the first whose bound states are all valid is taken, else
+    /// the last. PATH sees no obstacles; this only chooses among its draws.
+    pub draws: usize,
 }
 
 impl Default for ExtendOptions {
     fn default() -> Self {
-        Self { spacing_m: 0.1, max_depth: 20, back_off_m: 0.0 }
+        Self { spacing_m: 0.1, max_depth: 20, back_off_m: 0.0, draws: 1 }
     }
 }
 
@@ -46,6 +49,7 @@ impl ExtendOptions {
     /// [`Error::Parameter`] for a spacing that is not finite and positive, or a depth of zero.
     pub fn check(&self) -> Result<(), Error> {
         in_range("spacing_m", self.spacing_m, f64::MIN_POSITIVE, f64::MAX, "finite and positive")?;
+        in_range("draws", self.draws as f64, 1.0, f64::MAX, "at least 1")?;
         in_range("back_off_m", self.back_off_m, 0.0, f64::MAX, "finite and not negative")?;
         in_range("max_depth", self.max_depth as f64, 1.0, f64::MAX, "at least 1")?;
         Ok(())
@@ -99,8 +103,18 @@ pub fn extend_around<D: Domain>(
     rng: &mut dyn Rng,
 ) -> Extension<D> {
     let m = problem.domain();
-    let e = path(m, problem.primitives(), from, to, options.max_depth, rng);
+    let mut e = path(m, problem.primitives(), from, to, options.max_depth, rng);
     let mut is_worth_it = None;
+    for _ in 1..options.draws {
+        let Some(r) = reroute else { break };
+        let is_valid = !e.instances.is_empty() && rest_is_valid(problem, r, &e, 0);
+        is_worth_it = Some(is_valid);
+        if is_valid || is_bound_to_repeat(&e) {
+            break;
+        }
+        e = path(m, problem.primitives(), from, to, options.max_depth, rng);
+        is_worth_it = None;
+    }
     let mut reached = Vec::new();
     let mut blocked: Option<(usize, Blame)> = None;
     for index in 0..e.instances.len() {
@@ -131,6 +145,12 @@ pub fn extend_around<D: Domain>(
     Extension { reached, is_met: blocked.is_none() && e.end == PathEnd::Met, blame: blocked.map(|(_, b)| b), buckets }
 }
 
+/// Does the path go straight to a target for the robot alone? Another draw would give the same.
+fn is_bound_to_repeat<D: Domain>(e: &Path<D>) -> bool {
+    e.instances.iter().all(|(_, instance)| instance.object.is_none())
+        && e.trials.iter().all(|(_, trial)| matches!(trial, Trial::Propagated { .. }))
+}
+
 /// How much of a motion that cannot turn aside must be free for the way to it to be worth looking for.
 const WORTH_REACHING: f64 = 0.25;
 
@@ -140,11 +160,12 @@ fn rest_is_valid<D: Domain>(problem: &Problem<D>, reroute: &dyn Reroute<D>, e: &
     let m = problem.domain();
     let rest = || e.instances.iter().zip(&e.states).zip(e.states.iter().skip(1)).skip(index);
     let is_bound = |instance: &Instance<D>| !reroute.is_free_to_turn(instance);
-    rest().filter(|(((_, i), _), _)| !is_bound(i)).all(|(((_, instance), _), end)| {
-        problem.validity().check(m, end, &instance.contacts).is_ok()
-    }) && rest().filter(|(((_, i), _), _)| is_bound(i)).all(|(((_, instance), start), _)| {
-        problem.validity().free_prefix(m, instance, start).fraction >= WORTH_REACHING
-    })
+    rest()
+        .filter(|(((_, i), _), _)| !is_bound(i))
+        .all(|(((_, instance), _), end)| problem.validity().check(m, end, &instance.contacts).is_ok())
+        && rest().filter(|(((_, i), _), _)| is_bound(i)).all(|(((_, instance), start), _)| {
+            problem.validity().free_prefix(m, instance, start).fraction >= WORTH_REACHING
+        })
 }
 
 /// What a validity check that stops short without saying why is taken to mean.

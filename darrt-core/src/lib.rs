@@ -56,3 +56,7 @@ pub mod prelude {
     pub use crate::state::{ComponentId, ComponentSet, ObjectId, State};
     pub use crate::validity::{Blame, BlockKind, FreePrefix, Validity};
 }
+
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct ReadmeExamples;

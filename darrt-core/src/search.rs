@@ -99,7 +99,8 @@ impl<'p, D: Domain> Darrt<'p, D> {
         let s = self.strategy.sampler.sample(m, self.problem.goal(), draw);
         let t = self.strategy.distance.nearest(m, &self.tree, &s).unwrap_or(Tree::<D>::ROOT);
         let from = self.tree.node(t).map_or(self.problem.start(), |node| &node.state);
-        let extension = extend_around(self.problem, &self.strategy.extend, self.strategy.reroute.as_deref(), from, &s, choose);
+        let extension =
+            extend_around(self.problem, &self.strategy.extend, self.strategy.reroute.as_deref(), from, &s, choose);
         let (is_met, buckets) = (extension.is_met, extension.buckets.clone());
         let step = self.absorb(t, extension);
         self.accounts.count(&buckets, step.added, is_met, step.blame.as_ref());

@@ -268,6 +268,8 @@ impl<D: Domain> Shared<'_, D> {
         };
         let mut attempts = self.done.into_inner().unwrap_or_default();
         attempts.sort_by_key(|a| a.number);
+        // An attempt that was cut short decides, also when one with a higher number came to its own end before.
+        let cut_short = attempts.iter().map(|a| a.stop).find(|s| matches!(s, Stop::Cancelled | Stop::TimeLimit));
         for attempt in attempts {
             outcome.accounts.merge(&attempt.accounts);
             outcome.iterations += attempt.iterations;
@@ -280,6 +282,9 @@ impl<D: Domain> Shared<'_, D> {
                 outcome.solution = attempt.solution;
                 break;
             }
+        }
+        if outcome.solution.is_none() {
+            outcome.stop = cut_short.unwrap_or(outcome.stop);
         }
         // The budget ended between two attempts.
         if outcome.stop == Stop::Restart {

@@ -80,13 +80,17 @@ impl Exporter {
         }
         let name = |id| m.movable(id).map(|o| o.body.name.to_string());
         let primitive = PrimitiveName::ALL.into_iter().find(|p| p.as_str() == instance.label);
-        let primitive = primitive.unwrap_or(PrimitiveName::ArmTransit);
+        let primitive = match primitive.unwrap_or(PrimitiveName::ArmTransit) {
+            // What is cut short before the object stands has only carried it.
+            PrimitiveName::Place if step.until < 1.0 => PrimitiveName::ArmRigidTransfer,
+            primitive => primitive,
+        };
         let written = Step {
             primitive,
             object: instance.object.and_then(name),
             holds: hold(m, &inside.mode),
             pushes: instance.object.and_then(name).filter(|_| primitive == PrimitiveName::Push),
-            allowed_contacts: contacts(m, instance, &inside.mode),
+            allowed_contacts: contacts(m, instance, &inside.mode, primitive),
             waypoints,
         };
         (written, end)
@@ -126,7 +130,7 @@ fn hold(m: &World, mode: &Mode) -> Option<Hold> {
 }
 
 /// What may touch in this step besides what rests on its support.
-fn contacts(m: &World, instance: &Instance<World>, mode: &Mode) -> Vec<AllowedContact> {
+fn contacts(m: &World, instance: &Instance<World>, mode: &Mode, primitive: PrimitiveName) -> Vec<AllowedContact> {
     let side: Side = m.manipulator().arm().side;
     let name = |id| m.movable(id).map(|o| o.body.name.to_string());
     let mut out = Vec::new();
@@ -141,7 +145,8 @@ fn contacts(m: &World, instance: &Instance<World>, mode: &Mode) -> Vec<AllowedCo
         };
         out.extend(AllowedContact::fingers(side, &object, reason));
     }
-    if let Some((object, surface)) = instance.contacts.support
+    if matches!(primitive, PrimitiveName::Pick | PrimitiveName::Place)
+        && let Some((object, surface)) = instance.contacts.support
         && let (Some(object), Some(support)) = (name(object), m.supports().get(surface.index()))
     {
         out.extend(support.bodies.iter().map(|body| AllowedContact::support(&object, body)));

@@ -70,6 +70,18 @@ pub enum PictureError {
         /// Its name.
         name: String,
     },
+    /// A number of a plan is too large to be drawn.
+    #[error("`{place}`: {name} is {value:e}, at most {bound} can be drawn")]
+    OutOfRange {
+        /// Path of the key in the plan file.
+        place: String,
+        /// What the number is.
+        name: String,
+        /// The number.
+        value: f64,
+        /// Its largest size.
+        bound: f64,
+    },
     /// The ending of the file names no format.
     #[error("{file}: a picture is an .svg or .html file")]
     Format {
@@ -102,9 +114,19 @@ impl Format {
     }
 }
 
+/// How much a picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Extent {
+    /// The large views, and a small one per step.
+    #[default]
+    Whole,
+    /// The large views only.
+    Overview,
+}
+
 /// The text of the picture file; the same story gives the same bytes.
-pub fn draw(story: &Story, format: Format) -> String {
-    let image = page::draw(story);
+pub fn draw(story: &Story, format: Format, extent: Extent) -> String {
+    let image = page::draw(story, extent);
     match format {
         Format::Svg => format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{image}\n"),
         Format::Html => {

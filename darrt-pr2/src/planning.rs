@@ -27,6 +27,8 @@ use crate::world::{self, Built, World, WorldState};
 const NODE_SPACING: f64 = 0.3;
 /// See [`ExtendOptions::back_off_m`].
 const BACK_OFF: f64 = 0.15;
+/// See [`ExtendOptions::draws`].
+const DRAWS: usize = 6;
 /// See [`Strategy::try_penalty_m`].
 const TRY_PENALTY: f64 = 0.5;
 
@@ -97,13 +99,7 @@ struct FileVerifier {
 }
 
 impl Verifier<World> for FileVerifier {
-    fn verify(
-        &self,
-        m: &World,
-        _: &WorldState,
-        _: &dyn Goal<World>,
-        plan: &Plan<World>,
-    ) -> Result<(), Refusal> {
+    fn verify(&self, m: &World, _: &WorldState, _: &dyn Goal<World>, plan: &Plan<World>) -> Result<(), Refusal> {
         let nobody = PlannerFacts {
             sampler: SamplerName::default(),
             distance: DistanceName::default(),
@@ -154,11 +150,7 @@ pub fn prepare(file: &ProblemFile) -> Result<Prepared, PlanningError> {
 ///
 /// # Errors
 /// [`PlanningError`] when the problem cannot be planned at all; see [`prepare`].
-pub fn plan(
-    request: &PlanRequest,
-    cancel: &Cancel,
-    observer: &mut dyn Observer,
-) -> Result<PlanResult, PlanningError> {
+pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer) -> Result<PlanResult, PlanningError> {
     let prepared = prepare(&request.problem)?;
     let (sampler, distance) = chosen(request);
     let strategy = strategy(&request.problem.sampling, sampler, distance)?;
@@ -186,8 +178,7 @@ fn result(
     outcome: Outcome<World>,
 ) -> PlanResult {
     let nodes = outcome.nodes as u64;
-    let facts =
-        PlannerFacts { sampler, distance, iterations: outcome.iterations, restarts: outcome.restarts, nodes };
+    let facts = PlannerFacts { sampler, distance, iterations: outcome.iterations, restarts: outcome.restarts, nodes };
     let m = prepared.problem.domain();
     let plan = outcome.solution.map(|s| prepared.exporter.export(m, s.plan(), request.seed, facts));
     PlanResult {
@@ -218,9 +209,7 @@ pub fn strategy(
     distance: DistanceName,
 ) -> Result<Strategy<World>, PlanningError> {
     let sampler: Box<dyn Sampler<World>> = match sampler {
-        SamplerName::RobotOrObjects => {
-            Box::new(RobotOrObjects::new(sampling.object_share, sampling.base_only_share)?)
-        }
+        SamplerName::RobotOrObjects => Box::new(RobotOrObjects::new(sampling.object_share, sampling.base_only_share)?),
         SamplerName::RandomSubset => Box::new(RandomSubset),
         SamplerName::Full => Box::new(Full),
     };
@@ -233,7 +222,12 @@ pub fn strategy(
     Ok(Strategy {
         sampler,
         distance,
-        extend: ExtendOptions { spacing_m: NODE_SPACING, back_off_m: BACK_OFF, ..ExtendOptions::default() },
+        extend: ExtendOptions {
+            spacing_m: NODE_SPACING,
+            back_off_m: BACK_OFF,
+            draws: DRAWS,
+            ..ExtendOptions::default()
+        },
         reroute: Some(Box::new(Detour::default())),
         try_penalty_m: TRY_PENALTY,
     })

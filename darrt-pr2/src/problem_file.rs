@@ -2,7 +2,7 @@
 //!
 //! The way of the data: [`read`] (size and nesting guards, TOML, nearest valid names) → the types below →
 //! [`validate`] (numbers, names, references, placement) → [`geometry`] (bodies, poses and support surfaces).
-//! The six problems of the paper are embedded, see [`builtin`]; `docs/problem-format.md` explains the format.
+//! The six problems of the paper are embedded, see [`builtin()`]; `docs/problem-format.md` explains the format.
 //!
 //! Units are SI, angles are radians unless the key ends in `_deg`, the world frame has the floor at z = 0 and z
 //! up, quaternions are `[x, y, z, w]`.

@@ -79,11 +79,12 @@ impl Pr2 {
         let links = moving
             .iter()
             .filter_map(|b| Some(RobotLink { body: model.body(b.link)?.clone(), group: group_of(b.frame) }))
-            .chain(rigid.iter().filter_map(|l| Some(RobotLink { body: model.body(*l)?.clone(), group: LinkGroup::Base })))
+            .chain(
+                rigid.iter().filter_map(|l| Some(RobotLink { body: model.body(*l)?.clone(), group: LinkGroup::Base })),
+            )
             .collect();
         let place = |link: usize| order.iter().position(|l| *l == link);
-        let self_pairs =
-            link_pairs(&model, side).iter().filter_map(|[a, b]| Some((place(*a)?, place(*b)?))).collect();
+        let self_pairs = link_pairs(&model, side).iter().filter_map(|[a, b]| Some((place(*a)?, place(*b)?))).collect();
         let base_from_link = rigid.iter().filter_map(|l| at_origin.get(*l).copied()).collect();
         let steps = 0..=20_u32;
         let joint_radius = steps.map(|i| model.joint_radius(side, HELD_STEP * f64::from(i))).collect();

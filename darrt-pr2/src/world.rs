@@ -34,6 +34,8 @@ pub type WorldState = TabletopState<Pr2>;
 const TRAVEL_GAP: f64 = 0.08;
 /// Free distance that a rim grasp keeps between fingertips and edge, metres.
 const RIM_CLEARANCE: f64 = 0.01;
+/// How much the fingers open to let go of an object, metres: at a table's corner there is no room for more.
+const RELEASE_OPENING: f64 = 0.01;
 /// Share of object samples that stand on a surface.
 const SURFACE_SHARE: f64 = 0.7;
 
@@ -95,9 +97,7 @@ pub fn primitives(problem: &ProblemFile) -> Vec<Box<dyn Primitive<World>>> {
     let one = |name: PrimitiveName| -> Box<dyn Primitive<World>> {
         match name {
             PrimitiveName::ArmTransit => Box::new(crate::arm_transit::ArmTransit),
-            PrimitiveName::StraightLineArmTransit => {
-                Box::new(crate::straight_line_arm_transit::StraightLineArmTransit)
-            }
+            PrimitiveName::StraightLineArmTransit => Box::new(crate::straight_line_arm_transit::StraightLineArmTransit),
             PrimitiveName::ArmRigidTransfer => Box::new(crate::arm_rigid_transfer::ArmRigidTransfer),
             PrimitiveName::BaseTransit => Box::new(crate::base_transit::BaseTransit),
             PrimitiveName::BaseRigidTransfer => Box::new(crate::base_rigid_transfer::BaseRigidTransfer),
@@ -196,7 +196,6 @@ fn movable(
 fn settings(problem: &ProblemFile, side: Side) -> Result<ActionSettings<ArmConfiguration>, PlanningError> {
     let push = &problem.push;
     let postures = problem.transit.postures.iter().map(|name| Ok(posture_named(name)?.values(side)));
-    let release_gap_m = problem.objects.iter().map(|o| o.rim.opening_m).fold(0.0, f64::max);
     Ok(ActionSettings {
         push: PushSettings {
             gap_m: push.gap_m,
@@ -217,7 +216,7 @@ fn settings(problem: &ProblemFile, side: Side) -> Result<ActionSettings<ArmConfi
                 .filter_map(|d| Vector3::from(*d).try_normalize(1e-9))
                 .collect(),
             approach_m: problem.place.approach_m,
-            release_gap_m,
+            release_opening_m: RELEASE_OPENING,
         },
         retreat_m: push.retreat_m.min(problem.place.retreat_m),
         least_line_share: 0.5,

@@ -82,6 +82,28 @@ fn an_edited_plan_is_refused() {
 }
 
 #[test]
+fn what_cannot_be_drawn_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    solved_problem(folder.path());
+    run(folder.path(), &["plan", "easy.toml", "-o", "p.json", "--no-picture"], 0);
+    let path = folder.path().join("p.json");
+    let plan: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    let complaint = |edit: &dyn Fn(&mut serde_json::Value)| {
+        let mut plan = plan.clone();
+        edit(&mut plan["start"]);
+        std::fs::write(&path, plan.to_string()).unwrap();
+        run(folder.path(), &["show", "p.json"], 2).1
+    };
+    let far = complaint(&|start| start["base"][1] = serde_json::json!(1e300));
+    assert!(far.contains("p.json: `start`: base is 1e300, at most 10000"), "{far}");
+    let zero = complaint(&|start| start["objects"]["plate"]["quaternion"] = serde_json::json!([0.0, 0.0, 0.0, 0.0]));
+    assert!(zero.contains("plate (norm of the quaternion"), "{zero}");
+    let gone = complaint(&|start| drop(start["joints"].as_object_mut().unwrap().remove("r_elbow_flex_joint")));
+    assert!(gone.contains("`start` lacks the joint `r_elbow_flex_joint`"), "{gone}");
+    assert_eq!(files(folder.path()), ["easy.toml", "p.json"]);
+}
+
+#[test]
 fn a_budget_that_ends_is_explained() {
     let folder = tempfile::tempdir().unwrap();
     let (printed, complaint) = run(folder.path(), &["plan", "plate3", "--iterations", "3", "--stats"], 1);

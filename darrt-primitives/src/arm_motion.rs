@@ -89,7 +89,9 @@ impl<M: Manipulator> ArmMotion<M> {
             return last;
         }
         let leg = self.knots.partition_point(|k| *k <= t);
-        let (Some(a), Some(b)) = (self.waypoints.get(leg.wrapping_sub(1)), self.waypoints.get(leg)) else { return last };
+        let (Some(a), Some(b)) = (self.waypoints.get(leg.wrapping_sub(1)), self.waypoints.get(leg)) else {
+            return last;
+        };
         let (Some(from), Some(to)) = (self.knots.get(leg.wrapping_sub(1)), self.knots.get(leg)) else { return last };
         let s = (t - from) / (to - from);
         Waypoint { robot: m.robot().interpolate(&a.robot, &b.robot, s), pushed: a.pushed + (b.pushed - a.pushed) * s }

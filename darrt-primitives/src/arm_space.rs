@@ -30,12 +30,7 @@ impl<J: JointVector> ArmSpace<J> {
     ///
     /// # Errors
     /// [`Error::Parameter`] for bounds that are not finite or inverted, or a wrong number of limits or weights.
-    pub fn new(
-        lower: [f64; 2],
-        upper: [f64; 2],
-        limits: &[JointLimit],
-        weights_m: &[f64],
-    ) -> Result<Self, Error> {
+    pub fn new(lower: [f64; 2], upper: [f64; 2], limits: &[JointLimit], weights_m: &[f64]) -> Result<Self, Error> {
         for (name, found) in [("number of joint limits", limits.len()), ("number of joint weights", weights_m.len())] {
             if found != J::COUNT {
                 let bound = "the number of joints of the arm";
@@ -118,8 +113,11 @@ impl<J: JointVector> ComponentSpace for ArmSpace<J> {
         let base = self.base.sample(rng);
         let mut arm = J::zeros();
         for (slot, limit) in arm.as_mut().iter_mut().zip(&self.limits) {
-            let (lower, upper) =
-                if limit.is_unlimited() { (-std::f64::consts::PI, std::f64::consts::PI) } else { (limit.lower, limit.upper) };
+            let (lower, upper) = if limit.is_unlimited() {
+                (-std::f64::consts::PI, std::f64::consts::PI)
+            } else {
+                (limit.lower, limit.upper)
+            };
             *slot = rng.random_range(lower..=upper);
         }
         Configuration { base, arm }

@@ -124,11 +124,7 @@ impl<M: Manipulator> Search<'_, M> {
         state
     }
 
-    fn instance(
-        &self,
-        start: &TabletopState<M>,
-        waypoints: &[Waypoint<M::Joints>],
-    ) -> Instance<Tabletop<M>> {
+    fn instance(&self, start: &TabletopState<M>, waypoints: &[Waypoint<M::Joints>]) -> Instance<Tabletop<M>> {
         let carried = self.mode.held().map_or(Carried::Nothing, |held| Carried::Held(*held));
         let motion = ArmMotion::new(self.m, start, waypoints, carried, self.mode.clone(), self.mode.clone());
         Instance {
@@ -151,7 +147,12 @@ impl<M: Manipulator> Search<'_, M> {
     }
 
     /// A random configuration of the part that moves: a posture now and then, else anywhere.
-    fn sample(&self, a: &Configuration<M::Joints>, b: &Configuration<M::Joints>, rng: &mut dyn Rng) -> Configuration<M::Joints> {
+    fn sample(
+        &self,
+        a: &Configuration<M::Joints>,
+        b: &Configuration<M::Joints>,
+        rng: &mut dyn Rng,
+    ) -> Configuration<M::Joints> {
         let mut q = self.m.robot().sample(rng);
         let postures = &self.m.settings().postures;
         match self.part {

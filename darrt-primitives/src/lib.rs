@@ -27,7 +27,7 @@ pub mod manipulator;
 pub mod mode;
 pub mod object_space;
 pub mod push;
-pub mod wish;
 pub mod stance_check;
 pub mod tabletop;
 pub mod validity;
+pub mod wish;

@@ -119,12 +119,7 @@ pub trait Manipulator: Send + Sync + 'static {
 
     /// Metres: bound on the travel of any point of the robot, and of a held object that reaches `held_reach_m` beyond
     /// the tool frame, on the straight line from `a` to `b`.
-    fn travel_m(
-        &self,
-        a: &Configuration<Self::Joints>,
-        b: &Configuration<Self::Joints>,
-        held_reach_m: f64,
-    ) -> f64;
+    fn travel_m(&self, a: &Configuration<Self::Joints>, b: &Configuration<Self::Joints>, held_reach_m: f64) -> f64;
 
     /// Typical metres of hand travel per unit of each joint: weights of the arm's distance.
     fn joint_weights_m(&self) -> &[f64];

@@ -51,9 +51,8 @@ impl ObjectSpace {
     /// [`Error::Parameter`] for a number outside its range.
     pub fn new(parts: ObjectSpaceParts) -> Result<Self, Error> {
         let ObjectSpaceParts { lower, upper, is_round, metres_per_rad, half_height_m, surfaces, surface_share } = parts;
-        let positive = |name, value| {
-            darrt_core::error::in_range(name, value, f64::MIN_POSITIVE, f64::MAX, "finite and positive")
-        };
+        let positive =
+            |name, value| darrt_core::error::in_range(name, value, f64::MIN_POSITIVE, f64::MAX, "finite and positive");
         Ok(Self {
             poses: Se3::new(lower, upper, positive("metres_per_rad", metres_per_rad)?)?,
             is_round,

@@ -16,8 +16,8 @@ use crate::grasp::GraspFamily;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Mode, SurfaceId};
 use crate::object_space::ObjectSpace;
-use crate::stance_check::StanceCheck;
 use crate::push::edge_stop::{EdgeRule, RimReach};
+use crate::stance_check::StanceCheck;
 
 /// A rigid object that can be manipulated, besides its configuration space.
 pub struct Movable {
@@ -80,8 +80,8 @@ pub struct PlaceSettings {
     pub approach_directions: Vec<Vector3<f64>>,
     /// Length of that motion, metres.
     pub approach_m: f64,
-    /// How far the fingers open to let go (never less than they are open), metres.
-    pub release_gap_m: f64,
+    /// How much farther than the held thickness the fingers open to let go, metres.
+    pub release_opening_m: f64,
 }
 
 /// Parameters of all actions.
@@ -108,6 +108,11 @@ pub struct ActionSettings<J> {
     /// Gap of the hand where nothing else asks for one, metres.
     pub travel_gap_m: f64,
 }
+
+/// What a metre of the empty hand counts in the tour distances against a metre of an object. A hand that is near an
+/// object is no better placed than one that is far: it has to back out first. With weight 1 the nearest node is always
+/// the one whose hand is wedged beside the object.
+const REACH_WEIGHT: f64 = 0.1;
 
 /// The domain.
 #[derive(Debug)]
@@ -184,7 +189,8 @@ impl<M: Manipulator> Tabletop<M> {
         let bottom = pose.translation.z - movable.half_height_m;
         movable.surfaces.iter().copied().find(|id| {
             self.surface(*id).is_some_and(|s| {
-                (bottom - s.height()).abs() <= slack_m && s.contains(&Point2::new(pose.translation.x, pose.translation.y))
+                (bottom - s.height()).abs() <= slack_m
+                    && s.contains(&Point2::new(pose.translation.x, pose.translation.y))
             })
         })
     }
@@ -225,7 +231,7 @@ impl<M: Manipulator> Domain for Tabletop<M> {
     }
 
     fn reach(&self, robot: &Configuration<M::Joints>, _: ObjectId, at: &Isometry3<f64>) -> f64 {
-        (self.tool_point(robot) - at.translation.vector).norm()
+        REACH_WEIGHT * (self.tool_point(robot) - at.translation.vector).norm()
     }
 
     fn working_point(&self, robot: &Configuration<M::Joints>) -> [f64; 3] {
@@ -239,7 +245,7 @@ impl<M: Manipulator> Domain for Tabletop<M> {
         _: ObjectId,
         at: &Isometry3<f64>,
     ) -> f64 {
-        (Vector3::from(working_point) - at.translation.vector).norm()
+        REACH_WEIGHT * (Vector3::from(working_point) - at.translation.vector).norm()
     }
 
     fn hop(&self, from: (ObjectId, &Isometry3<f64>), to: (ObjectId, &Isometry3<f64>)) -> f64 {

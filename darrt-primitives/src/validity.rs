@@ -250,13 +250,19 @@ impl SceneValidity {
     fn check_rules<M: Manipulator>(m: &Tabletop<M>, state: &TabletopState<M>) -> Result<(), Blame> {
         let [x, y, _] = state.robot.base;
         if let Some((joint, value)) = m.robot().first_outside(&state.robot.arm) {
-            let bound = m.robot().limits().get(joint).map_or_else(String::new, |l| format!("[{}, {}]", l.lower, l.upper));
+            let bound =
+                m.robot().limits().get(joint).map_or_else(String::new, |l| format!("[{}, {}]", l.lower, l.upper));
             let first = format!("arm joint {joint} at {value}").into();
             return Err(Blame { kind: BlockKind::Limits, first, second: bound.into(), place: [x, y, 0.0] });
         }
         if !m.robot().base().contains(&state.robot.base) {
             let first = format!("base at {:?}", state.robot.base).into();
-            return Err(Blame { kind: BlockKind::Limits, first, second: "the base's bounds".into(), place: [x, y, 0.0] });
+            return Err(Blame {
+                kind: BlockKind::Limits,
+                first,
+                second: "the base's bounds".into(),
+                place: [x, y, 0.0],
+            });
         }
         for (i, pose) in state.objects.iter().enumerate() {
             let id = ObjectId::new(i);
@@ -370,12 +376,7 @@ impl<M: Manipulator> Validity<Tabletop<M>> for SceneValidity {
         result.map_err(|hit| self.blame(&hit))
     }
 
-    fn free_prefix(
-        &self,
-        m: &Tabletop<M>,
-        instance: &Instance<Tabletop<M>>,
-        from: &TabletopState<M>,
-    ) -> FreePrefix {
+    fn free_prefix(&self, m: &Tabletop<M>, instance: &Instance<Tabletop<M>>, from: &TabletopState<M>) -> FreePrefix {
         let mut worker = self.worker();
         let free = self.advance(m, instance, from, &mut worker);
         self.give_back(worker);

@@ -39,7 +39,13 @@ impl Sampler<World> for Poison {
 fn poisoned_samples_leave_no_trace_in_the_tree() {
     let problem = problems::two_pucks().unwrap();
     for distance in [Box::new(GreedyVisit) as Box<dyn Distance<World>>, Box::new(Euclidean), Box::new(ExactTour)] {
-        let strategy = Strategy { sampler: Box::new(Poison), distance, extend: ExtendOptions::default(), reroute: None, try_penalty_m: 0.0 };
+        let strategy = Strategy {
+            sampler: Box::new(Poison),
+            distance,
+            extend: ExtendOptions::default(),
+            reroute: None,
+            try_penalty_m: 0.0,
+        };
         let mut darrt = Darrt::new(&problem, &strategy, 0, 0, usize::MAX);
         for _ in 0..200 {
             darrt.step();

@@ -51,7 +51,8 @@ pub(crate) fn strategy(
         sampler: Box::new(GoalBiased::new(sampler, 0.2).unwrap()),
         distance: Box::new(distance),
         extend: ExtendOptions::default(),
-        reroute: None, try_penalty_m: 0.0,
+        reroute: None,
+        try_penalty_m: 0.0,
     }
 }
 

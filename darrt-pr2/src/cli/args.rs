@@ -60,8 +60,8 @@ Examples:
                                                     limited by work, not by the clock
   darrt plan mine.toml --stats                      see where the attempts end
 
-The same problem, seed and options give the same plan file byte for byte, with any number of threads, as long as the
-time limit is not what ends the search.";
+The same problem, seed and options give the same plan file byte for byte, with any number
+of threads, as long as the time limit is not what ends the search.";
 
 /// Options of `darrt plan`.
 #[derive(Debug, Args)]
@@ -136,6 +136,9 @@ pub struct ShowOptions {
     /// Write the picture here, .html or .svg [default: PROBLEM.html in the current folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Leave out the small view of every step
+    #[arg(long)]
+    pub overview: bool,
 }
 
 /// Options of `darrt schema`.

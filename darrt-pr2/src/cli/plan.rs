@@ -10,7 +10,7 @@ use super::exit::{Exit, Failure};
 use super::output::{self, Output};
 use super::progress::Progress;
 use super::{check, diagnosis, statistics, steps};
-use crate::picture::{self, Format, Story};
+use crate::picture::{self, Extent, Format, Story};
 use crate::plan_file::PlanFile;
 use crate::planning::{self, PlanRequest, PlanResult};
 use crate::problem_file::ProblemFile;
@@ -126,7 +126,7 @@ impl Files {
     fn write(&self, plan: &PlanFile, story: &Story) -> Result<(), Failure> {
         plan.write(&self.plan)?;
         match &self.picture {
-            Some((path, format)) => output::write_file(path, &picture::draw(story, *format)),
+            Some((path, format)) => output::write_file(path, &picture::draw(story, *format, Extent::Whole)),
             None => Ok(()),
         }
     }

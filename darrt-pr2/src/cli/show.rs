@@ -7,7 +7,7 @@ use super::args::ShowOptions;
 use super::exit::{Exit, Failure};
 use super::output::{self, Output};
 use super::steps;
-use crate::picture::{self, Format, Story};
+use crate::picture::{self, Extent, Format, Story};
 use crate::plan_file::PlanFile;
 use crate::problem_file::{ProblemFile, builtin};
 
@@ -21,7 +21,8 @@ pub(super) fn run(options: &ShowOptions, output: &mut Output) -> Result<Exit, Fa
     let path = options.output.clone().unwrap_or_else(default);
     let format = Format::of_path(&path)?;
     let place = output::writable(&path)?;
-    output::write_file(&place, &picture::draw(&story, format))?;
+    let extent = if options.overview { Extent::Overview } else { Extent::Whole };
+    output::write_file(&place, &picture::draw(&story, format, extent))?;
     if !story.steps.is_empty() {
         output.print(&steps::table(&story))?;
     }

@@ -9,6 +9,7 @@ use super::outline::body_points;
 use super::palette;
 use super::story::{Snapshot, Story};
 use super::view::{Projection, View};
+use crate::forward::Frame;
 use crate::problem_file::GoalTarget;
 
 /// How much of the robot is drawn.
@@ -16,7 +17,7 @@ use crate::problem_file::GoalTarget;
 pub(super) enum Detail {
     /// Trunk and both arms.
     Whole,
-    /// The manipulating arm only.
+    /// The manipulating arm below the shoulder only.
     Arm,
     /// The hand of the manipulating arm only.
     Hand,
@@ -28,6 +29,7 @@ pub(super) struct Figure {
     base: Vec<Point3<f64>>,
     trunk: Vec<Vec<Point3<f64>>>,
     other_arm: Vec<Vec<Point3<f64>>>,
+    shoulder: Vec<Point3<f64>>,
     arm: Vec<Vec<Point3<f64>>>,
     hand: Vec<Vec<Point3<f64>>>,
 }
@@ -41,24 +43,28 @@ impl Figure {
             _ => Vec::new(),
         };
         let name = |link: usize| story.model.tree().link_names().get(link).map_or("", |name| &**name);
-        let is_hand = |link: usize| name(link).contains("gripper");
-        let (hand, arm): (Vec<usize>, Vec<usize>) =
-            story.model.arm_bodies(story.side).iter().map(|b| b.link).partition(|&link| is_hand(link));
+        let mine = story.model.arm_bodies(story.side);
+        let part = |wanted: &dyn Fn(Frame) -> bool| {
+            mine.iter().filter(|body| wanted(body.frame)).map(|body| points(body.link)).collect::<Vec<_>>()
+        };
+        let is_shoulder = |frame| frame == Frame::ShoulderPan;
+        let is_hand = |frame| frame >= Frame::WristRoll;
         let (base, trunk): (Vec<usize>, Vec<usize>) =
             story.model.trunk_links().partition(|&link| name(link) == "base_link");
         Self {
             base: base.into_iter().flat_map(points).collect(),
             trunk: trunk.into_iter().map(points).collect(),
             other_arm: story.model.arm_bodies(story.side.other()).iter().map(|b| points(b.link)).collect(),
-            arm: arm.into_iter().map(points).collect(),
-            hand: hand.into_iter().map(points).collect(),
+            shoulder: part(&is_shoulder).into_iter().flatten().collect(),
+            arm: part(&|frame| !is_shoulder(frame) && !is_hand(frame)),
+            hand: part(&is_hand),
         }
     }
 
     /// All corners.
     pub(super) fn points(&self) -> impl Iterator<Item = &Point3<f64>> {
         let lists = self.trunk.iter().chain(&self.other_arm).chain(&self.arm).chain(&self.hand);
-        self.base.iter().chain(lists.flatten())
+        self.base.iter().chain(&self.shoulder).chain(lists.flatten())
     }
 
     /// The silhouette of the base: its footprint when seen from above.
@@ -71,7 +77,7 @@ impl Figure {
         if detail == Detail::Whole {
             let base = Ink::filled(colour).opacity(0.16 * strength).line(colour, 0.5 + strength);
             group.append(ink::polygon(&self.base(view), &base));
-            let rest: Vec<_> = self.trunk.iter().chain(&self.other_arm).collect();
+            let rest: Vec<_> = self.trunk.iter().chain(&self.other_arm).chain([&self.shoulder]).collect();
             group.append(layer(view, rest, &palette::tint(colour, 0.25), colour, 0.45 * strength));
         }
         let mut limbs: Vec<_> = self.hand.iter().collect();

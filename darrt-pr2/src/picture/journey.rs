@@ -15,10 +15,12 @@ use crate::problem_file::PrimitiveName;
 
 /// Base poses nearer than this (m, rad) are drawn once.
 const SAME_BASE: f64 = 0.01;
+/// How strongly the robot is drawn after a transit.
+const PALE: f64 = 0.3;
 /// A drawn way leaves out points nearer to the last one than this, page units.
 const FINE: f64 = 0.4;
 
-/// Key states that share a pose of the base, and the numbers of their steps from 1.
+/// Key states that share a pose of the base, and the numbers of their steps from 1; ways of the empty arm are not counted.
 #[derive(Debug, Clone)]
 struct Stop {
     /// The steps that end here.
@@ -31,7 +33,8 @@ struct Stop {
 /// The key states, the end of each step, gathered by base pose; in order of first visit.
 fn stops(story: &Story) -> Vec<Stop> {
     let mut stops: Vec<Stop> = Vec::new();
-    for (index, step) in story.steps.iter().enumerate() {
+    let counted = |step: &StoryStep| moves_base(step) || strength(step.primitive) > PALE;
+    for (index, step) in story.steps.iter().enumerate().filter(|(_, step)| counted(step)) {
         let base = story.end_of(index).robot.base;
         let entry = (index + 1, step.primitive);
         let same = |stop: &&mut Stop| stop.base.iter().zip(base).all(|(a, b)| (a - b).abs() < SAME_BASE);
@@ -49,21 +52,28 @@ fn stops(story: &Story) -> Vec<Stop> {
 pub(super) fn draw_robots(story: &Story, view: &View, group: &mut Element) {
     let strength = if story.steps.is_empty() { 1.0 } else { 0.6 };
     Figure::new(story, &story.start).draw(view, Detail::Whole, palette::ROBOT, strength, group);
-    // What only moves the robot lies below what moves an object, and is paler.
-    for transits in [true, false] {
-        for (index, step) in story.steps.iter().enumerate().filter(|(_, step)| is_transit(step.primitive) == transits) {
-            let (colour, strength) = (palette::of(step.primitive), if transits { 0.35 } else { 0.75 });
+    // What only moves the robot lies below and is paler, what changes the object's state is on top.
+    for strength in [PALE, 0.4, 0.75] {
+        for (index, step) in story.steps.iter().enumerate() {
+            if self::strength(step.primitive) != strength {
+                continue;
+            }
             let mut drawn = ink::group(&format!("step {}: {}", index + 1, step.primitive));
             let detail = if moves_base(step) { Detail::Whole } else { Detail::Arm };
+            let colour = palette::of(step.primitive);
             Figure::new(story, story.end_of(index)).draw(view, detail, colour, strength, &mut drawn);
             group.append(drawn);
         }
     }
 }
 
-const fn is_transit(primitive: PrimitiveName) -> bool {
-    use PrimitiveName::{ArmTransit, BaseTransit, StraightLineArmTransit};
-    matches!(primitive, ArmTransit | BaseTransit | StraightLineArmTransit)
+/// How strongly the robot is drawn after a primitive.
+const fn strength(primitive: PrimitiveName) -> f64 {
+    match primitive {
+        PrimitiveName::ArmTransit | PrimitiveName::StraightLineArmTransit | PrimitiveName::BaseTransit => PALE,
+        PrimitiveName::ArmRigidTransfer | PrimitiveName::BaseRigidTransfer => 0.4,
+        PrimitiveName::Pick | PrimitiveName::Place | PrimitiveName::Push => 0.75,
+    }
 }
 
 fn moves_base(step: &StoryStep) -> bool {

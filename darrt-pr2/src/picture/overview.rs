@@ -32,10 +32,12 @@ pub(super) enum Sheet {
 
 impl Sheet {
     /// What is written over the panel.
-    pub(super) const fn title(self) -> &'static str {
+    pub(super) fn title(self, story: &Story) -> &'static str {
+        let has_pushes = story.steps.iter().any(|step| step.primitive == PrimitiveName::Push);
         match self {
             Self::Above | Self::Side(Projection::Above) => "From above",
-            Self::CloseUp => "Close-up: where the object starts, and its pushes",
+            Self::CloseUp if has_pushes => "Close-up: where the object starts, and its pushes",
+            Self::CloseUp => "Close-up: where the object starts",
             Self::Side(Projection::FromTheRight) => "From the right",
             Self::Side(Projection::FromBehind) => "From behind",
         }
@@ -117,7 +119,9 @@ fn name_surfaces(story: &Story, view: &View, group: &mut Element) {
     for surface in story.geometry.scene.surfaces() {
         let Some(window) = Window::around(surface_points(surface).map(|p| view.see(&p))) else { continue };
         let label = format!("{} {:.2} m", surface.name(), surface.height());
-        let (left, right) = (window.low.x + 5.0, window.high.x - 5.0 - ink::text_width(&label, SIZE));
+        let inside = (view.size().0 - ink::text_width(&label, SIZE) - 4.0).max(4.0);
+        let left = (window.low.x + 5.0).clamp(4.0, inside);
+        let right = (window.high.x - 5.0 - ink::text_width(&label, SIZE)).clamp(4.0, inside);
         let (top, bottom) = (window.low.y + 14.0, window.high.y - 6.0);
         let corners = [[left, top], [right, top], [left, bottom], [right, bottom]].map(Point2::from);
         let room = |at: &Point2<f64>| {

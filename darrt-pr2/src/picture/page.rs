@@ -4,6 +4,7 @@ use nalgebra::Point2;
 use svg::Node as _;
 use svg::node::element::Element;
 
+use super::Extent;
 use super::filmstrip;
 use super::ink::{self, Anchor, Ink};
 use super::overview::{Sheet, start_ink};
@@ -25,7 +26,7 @@ const TALLEST: f64 = 640.0;
 const TALLEST_SIDE: f64 = 340.0;
 
 /// The whole page as one SVG element.
-pub(super) fn draw(story: &Story) -> Element {
+pub(super) fn draw(story: &Story, extent: Extent) -> Element {
     let mut page = Element::new("g");
     let room = Room::new(&story.geometry);
     let mut y = draw_header(story, &mut page);
@@ -34,7 +35,7 @@ pub(super) fn draw(story: &Story) -> Element {
     let sides = [Sheet::Side(Projection::FromBehind), Sheet::Side(Projection::FromTheRight)];
     y = draw_row(story, &room, sides, y, TALLEST_SIDE, &mut page);
 
-    if !story.steps.is_empty() {
+    if !story.steps.is_empty() && extent == Extent::Whole {
         let title = "Step by step, from above (grey: before, colour: after, dots: way of the hand)";
         let at = Point2::new(SIDE, y + 6.0);
         page.append(ink::bold(ink::text(&at, 14.0, palette::TEXT, Anchor::Start, title)));
@@ -65,7 +66,7 @@ fn draw_row(story: &Story, room: &Room, row: [Sheet; 2], top: f64, tallest: f64,
     let mut corner = Point2::new(SIDE, top + TITLE);
     for (sheet, view) in row.into_iter().zip(views) {
         let view = view.filling(width, height);
-        Panel { corner, view }.draw(sheet.title(), sheet.draw(story, room, &view), page);
+        Panel { corner, view }.draw(sheet.title(story), sheet.draw(story, room, &view), page);
         corner.x += width + GAP;
     }
     top + TITLE + height + GAP

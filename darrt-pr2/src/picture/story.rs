@@ -17,6 +17,11 @@ use super::PictureError;
 /// Gap between the fingers where nothing says otherwise (m).
 const OPEN_GAP: f64 = 0.08;
 
+/// Largest coordinate that is drawn (m, rad).
+const FARTHEST: f64 = 1e4;
+/// Largest difference of a quaternion's norm from one.
+const UNIT: f64 = 1e-3;
+
 /// The state of everything that moves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot {
@@ -155,9 +160,20 @@ fn snapshot(problem: &ProblemFile, waypoint: &Waypoint, place: impl Fn() -> Stri
         }
         *finger = joint(&format!("{}_gripper_l_finger_joint", side.prefix()))?;
     }
-    let pose = |name: &str| waypoint.objects.get(name).ok_or_else(|| missing(place(), "object", name));
-    let objects = problem.objects.iter().map(|object| pose(&object.name).map(|pose| Isometry3::from(*pose)));
-    Ok(Snapshot { robot, objects: objects.collect::<Result<_, _>>()? })
+    let within = |name: &str, value: f64, bound: f64| {
+        let flaw = || PictureError::OutOfRange { place: place(), name: name.to_owned(), value, bound };
+        if value.abs() <= bound { Ok(()) } else { Err(flaw()) }
+    };
+    waypoint.base.iter().try_for_each(|value| within("base", *value, FARTHEST))?;
+    let pose = |name: &str| -> Result<_, PictureError> {
+        let pose = waypoint.objects.get(name).ok_or_else(|| missing(place(), "object", name))?;
+        pose.position.iter().try_for_each(|value| within(name, *value, FARTHEST))?;
+        let norm = pose.quaternion.iter().map(|value| value * value).sum::<f64>().sqrt();
+        within(&format!("{name} (norm of the quaternion, less one)"), norm - 1.0, UNIT)?;
+        Ok(Isometry3::from(*pose))
+    };
+    let objects = problem.objects.iter().map(|object| pose(&object.name));
+    Ok(Snapshot { robot, objects: objects.collect::<Result<_, PictureError>>()? })
 }
 
 fn missing(place: String, what: &'static str, name: &str) -> PictureError {

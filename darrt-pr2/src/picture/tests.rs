@@ -62,10 +62,10 @@ fn every_embedded_problem_has_a_picture_in_both_formats() {
     for name in builtin_names() {
         let problem = builtin(name).unwrap();
         let story = Story::of_problem(&problem).unwrap();
-        let image = draw(&story, Format::Svg);
+        let image = draw(&story, Format::Svg, Extent::Whole);
         assert!(image.starts_with("<?xml") && image.trim_end().ends_with("</svg>"), "{name}");
         assert!(!image.contains("NaN") && !image.contains("inf"), "{name}");
-        let page = draw(&story, Format::Html);
+        let page = draw(&story, Format::Html, Extent::Whole);
         assert!(page.starts_with("<!DOCTYPE html>") && page.contains("<svg class=\"page\""), "{name}");
     }
 }
@@ -73,22 +73,24 @@ fn every_embedded_problem_has_a_picture_in_both_formats() {
 #[test]
 fn pictures_need_nothing_from_elsewhere_and_are_the_same_twice() {
     let story = story();
-    let page = draw(&story, Format::Html);
+    let page = draw(&story, Format::Html, Extent::Whole);
     for foreign in ["href=", "src=", "url(", "<script", "@import"] {
         assert!(!page.contains(foreign), "{foreign}");
     }
-    assert_eq!(page, draw(&story, Format::Html));
+    assert_eq!(page, draw(&story, Format::Html, Extent::Whole));
 }
 
 #[test]
 fn every_step_has_a_number_a_name_and_a_distance() {
     let story = story();
-    let image = draw(&story, Format::Svg);
+    let image = draw(&story, Format::Svg, Extent::Whole);
     for (number, step) in (1..).zip(&story.steps) {
         assert!(image.contains(&format!("<title>step {number}: {}</title>", step.primitive)) || step.object.is_none());
         assert!(image.contains(&format!(">{number}</text>")), "step {number}");
     }
     assert!(image.contains("object 0.58 m"));
+    let overview = draw(&story, Format::Svg, Extent::Overview);
+    assert!(overview.len() < image.len() && !overview.contains("object 0.58 m"));
     assert!(image.contains("Seed 1."));
 }
 
@@ -96,7 +98,7 @@ fn every_step_has_a_number_a_name_and_a_distance() {
 fn hostile_names_do_not_break_the_file() {
     let mut story = story();
     story.problem.title = "<script>&\u{1}\"".to_owned();
-    let page = draw(&story, Format::Html);
+    let page = draw(&story, Format::Html, Extent::Whole);
     assert!(!page.contains("<script") && page.contains("&lt;script&gt;&amp; \""));
     assert_eq!(page.matches("<svg ").count(), page.matches("</svg>").count());
 }

@@ -28,10 +28,8 @@ pub fn follow<M: Manipulator>(
     let mut i = 1.0;
     while i <= steps {
         let share = i / steps;
-        let pose = Isometry3::from_parts(
-            Translation3::from(from.translation.vector + displacement * share),
-            from.rotation,
-        );
+        let pose =
+            Isometry3::from_parts(Translation3::from(from.translation.vector + displacement * share), from.rotation);
         let Some(next) = m.manipulator().inverse_near(base, &pose, &here) else { return line };
         line.arms.push(next);
         line.share = share;

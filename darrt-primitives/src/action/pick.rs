@@ -122,11 +122,8 @@ fn assemble<M: Manipulator>(
     let tool_from_object = m.manipulator().world_from_tool(&chain.end.robot).inverse() * pose;
     let held = Held { object, tool_from_object };
     let mode = chain.end.mode.attached(held, grasp.closed_gap_m).ok_or(Infeasible::NoGrasp)?;
-    let waypoints: Vec<_> = way
-        .up
-        .iter()
-        .map(|arm| Waypoint { robot: Configuration { base: way.base, arm: *arm }, pushed: 0.0 })
-        .collect();
+    let waypoints: Vec<_> =
+        way.up.iter().map(|arm| Waypoint { robot: Configuration { base: way.base, arm: *arm }, pushed: 0.0 }).collect();
     let motion = ArmMotion::new(m, &chain.end, &waypoints, Carried::Held(held), mode.clone(), mode);
     let instance = Instance {
         label: label::PICK,

@@ -65,7 +65,7 @@ const YAW_TRIES: usize = 10;
 
 /// How far the fingers open to let go.
 fn release_gap_m<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>) -> f64 {
-    m.settings().place.release_gap_m.max(from.mode.gap_m())
+    (from.mode.gap_m() + m.settings().place.release_opening_m).min(m.manipulator().hand().max_gap_m())
 }
 
 /// Upright on the surface over the target's x and y.
@@ -122,10 +122,7 @@ fn assemble<M: Manipulator>(
     let instance = Instance {
         label: label::PLACE,
         motion: Box::new(motion),
-        contacts: Contacts {
-            fingers: Some((held.object, TouchReason::Grasp)),
-            support: Some((held.object, surface)),
-        },
+        contacts: Contacts { fingers: Some((held.object, TouchReason::Grasp)), support: Some((held.object, surface)) },
         moves: ComponentSet::ROBOT.with(ComponentId::Object(held.object)),
         object: Some(held.object),
         reversible: false,

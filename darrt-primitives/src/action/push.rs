@@ -54,7 +54,8 @@ pub fn push<M: Manipulator>(
 
     let end = end_of_push(m, surface, pose, target, rng)?;
     let hand = m.manipulator().hand();
-    let contact = RimContact::new(radius, settings.gap_m, hand.tip_half_width_m()).map_err(|_| Infeasible::NoContact)?;
+    let contact =
+        RimContact::new(radius, settings.gap_m, hand.tip_half_width_m()).map_err(|_| Infeasible::NoContact)?;
     let height = surface.height() + settings.fingertip_clearance_m + hand.tip_beyond_tool_m(settings.gap_m);
     let twin = HandStance { twin: rng.random_bool(0.5), ..HandStance::default() };
     let center = Point2::new(pose.translation.x, pose.translation.y);
@@ -165,11 +166,11 @@ pub(super) fn approach<M: Manipulator>(
 ) -> Result<(), Infeasible> {
     let (first, rest) = arms.split_first().ok_or(Infeasible::Unreachable)?;
     travel(m, chain, &Configuration { base, arm: *first }, gap_m, rng);
-    let mode = chain.end.mode.opened_to(gap_m).and_then(|mode| mode.engaged_with(object)).ok_or(Infeasible::NoContact)?;
+    let mode =
+        chain.end.mode.opened_to(gap_m).and_then(|mode| mode.engaged_with(object)).ok_or(Infeasible::NoContact)?;
     let waypoints: Vec<_> =
         rest.iter().map(|arm| Waypoint { robot: Configuration { base, arm: *arm }, pushed: 0.0 }).collect();
-    let mut instance =
-        super::travel::carry(m, chain, &waypoints, &mode, label::STRAIGHT_LINE_ARM_TRANSIT, contacts);
+    let mut instance = super::travel::carry(m, chain, &waypoints, &mode, label::STRAIGHT_LINE_ARM_TRANSIT, contacts);
     instance.object = Some(object);
     chain.push(m, instance);
     Ok(())

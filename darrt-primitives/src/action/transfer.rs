@@ -26,8 +26,7 @@ pub fn transfer<M: Manipulator>(
     let held = *from.mode.held().ok_or(Infeasible::NoGrasp)?;
     let target = freely_turned(m, held.object.index(), target, rng);
     let at_target = target * held.tool_from_object.inverse();
-    let wanted =
-        Wanted { world_from_tool: &at_target, gap_m: from.mode.gap_m(), tries: m.settings().base_tries };
+    let wanted = Wanted { world_from_tool: &at_target, gap_m: from.mode.gap_m(), tries: m.settings().base_tries };
     let robot = stance(m, from, &wanted, rng, |q| Some(*q)).ok_or(Infeasible::Unreachable)?;
     let mut chain = Chain::at(from);
     travel(m, &mut chain, &robot, from.mode.gap_m(), rng);

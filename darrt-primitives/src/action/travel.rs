@@ -26,7 +26,8 @@ pub fn travel<M: Manipulator>(
 ) {
     let drives = chain.end.robot.base != target.base;
     let arm_first = drives && rng.random_bool(0.5);
-    let posture = if drives && rng.random_bool(SHARE_VIA_POSTURE) { clear_posture(m, chain, target, rng) } else { None };
+    let posture =
+        if drives && rng.random_bool(SHARE_VIA_POSTURE) { clear_posture(m, chain, target, rng) } else { None };
     if let Some(posture) = posture {
         arm_to(m, chain, &posture, gap_m);
         base_to(m, chain, &target.base, gap_m);
