@@ -176,9 +176,15 @@ fn same_outcome<D: Domain>(found: &Outcome<D>, against: &Outcome<D>) -> Result<(
     Ok(())
 }
 
-/// Cancels after the third iteration, and counts the iterations that still come.
+/// Cancels after the third iteration, and watches what comes after.
+#[derive(Default)]
 struct CancelAfter {
+    /// Iterations so far.
     seen: u64,
+    /// Did an attempt say that it was cancelled?
+    is_cut_short: bool,
+    /// Did an attempt end because its tree was full?
+    is_full: bool,
 }
 
 impl CancelAfter {
@@ -187,7 +193,14 @@ impl CancelAfter {
 
 impl Observer for CancelAfter {
     fn on_event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
-        self.seen += u64::from(matches!(event, Event::Iteration { .. }));
+        match event {
+            Event::Iteration { .. } => self.seen += 1,
+            Event::AttemptEnded { stop, .. } => {
+                self.is_cut_short |= *stop == Stop::Cancelled;
+                self.is_full |= *stop == Stop::NodeLimit;
+            }
+            _ => {}
+        }
         if self.seen >= Self::AT { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
@@ -200,15 +213,16 @@ pub type Solver<'a, D> = &'a dyn Fn(&SolveOptions, &mut dyn Observer) -> Outcome
 /// # Errors
 /// [`CANCEL`] with the iterations that still came, or with the wrong reason.
 pub fn check_cancel<D: Domain>(solve: Solver<'_, D>, options: &SolveOptions, threads: usize) -> Result<(), Broken> {
-    let mut observer = CancelAfter { seen: 0 };
-    let outcome = solve(&timeless(options, threads), &mut observer);
+    let mut observer = CancelAfter::default();
+    let heard = timeless(options, threads);
+    let outcome = solve(&heard, &mut observer);
     let most = CancelAfter::AT + threads as u64;
     ensure(CANCEL, observer.seen <= most, || format!("{} iterations", observer.seen), "at most one more per thread")?;
-    // It may have come to another end before.
-    let ended = outcome.solution.is_some() || outcome.stop == Stop::NodeLimit || observer.seen < CancelAfter::AT;
-    let few = options.budget.iterations.is_some_and(|n| n <= CancelAfter::AT);
-    let told = outcome.stop == Stop::Cancelled;
-    ensure(CANCEL, told || ended || few, || format!("{:?}", outcome.stop), "cancelled")?;
+    // Everything may have come to its own end just then; but an attempt that was cut short decides.
+    let is_used_up = heard.budget.iterations.is_some_and(|n| outcome.iterations >= n);
+    let may_end = observer.seen < CancelAfter::AT || observer.is_full || is_used_up;
+    let is_right = outcome.solution.is_some() || outcome.stop == Stop::Cancelled || (may_end && !observer.is_cut_short);
+    ensure(CANCEL, is_right, || format!("{:?}", outcome.stop), "cancelled")?;
 
     let stopped = timeless(options, threads);
     stopped.budget.cancel.cancel();

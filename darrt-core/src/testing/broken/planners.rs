@@ -1,6 +1,7 @@
 //! Broken parts that show only when the whole plans.
 
 use std::cell::Cell;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread;
 
@@ -8,20 +9,20 @@ use super::Case;
 use super::bench::{Act, Bench, Rule, robot_at, sample, state};
 use super::motions::{go, instance};
 use super::samplers::Dice;
-use crate::budget::Budget;
+use crate::budget::{Budget, Stop};
 use crate::distance::Euclidean;
 use crate::extend::ExtendOptions;
 use crate::goal::{Goal, Reach, Region};
 use crate::laws::planner::{BALANCED, CANCEL, REPLAY, SEEDED, THREADS, VALID, VERIFIED};
 use crate::laws::{Broken, check_accounts, check_cancel, check_planner};
 use crate::motion::Waypoints;
-use crate::observe::Silent;
 use crate::observe::accounts::{Accounts, Bucket};
+use crate::observe::{Event, Observer, Silent};
 use crate::plan::Plan;
 use crate::problem::{Parts, Problem};
 use crate::sample::{Full, Sampler};
 use crate::search::Strategy;
-use crate::solve::{SolveOptions, solve};
+use crate::solve::{Outcome, SolveOptions, solve};
 use crate::state::{ComponentSet, State};
 use crate::validity::FreePrefix;
 use crate::verify::{Refusal, Replay, Verifier};
@@ -177,8 +178,22 @@ fn books() -> Vec<Case> {
             name: "deaf solver",
             wrong: "tells the observer, but does not listen to what it answers",
             law: CANCEL,
-            broken: || cancelled(true),
-            honest: || cancelled(false),
+            broken: || {
+                cancelled(|problem, strategy, options, observer| solve(problem, strategy, options, &mut Deaf(observer)))
+            },
+            honest: || cancelled(solve),
+        },
+        Case {
+            name: "quiet solver",
+            wrong: "stops when it is cancelled, but reports that the iterations were used up",
+            law: CANCEL,
+            broken: || {
+                cancelled(|problem, strategy, options, observer| Outcome {
+                    stop: Stop::IterationLimit,
+                    ..solve(problem, strategy, options, observer)
+                })
+            },
+            honest: || cancelled(solve),
         },
     ]
 }
@@ -189,7 +204,10 @@ fn books_of(buckets: &[Bucket]) -> Result<(), Broken> {
     check_accounts(&accounts, 1, 2)
 }
 
-fn cancelled(is_deaf: bool) -> Result<(), Broken> {
+/// [`solve`], or something like it.
+type Solve = fn(&Problem<Bench>, &Strategy<Bench>, &SolveOptions, &mut dyn Observer) -> Outcome<Bench>;
+
+fn cancelled(run: Solve) -> Result<(), Broken> {
     let mut parts = parts();
     parts.goal = Box::new(Reach::new(robot_at([3.5, 0.0])));
     let strategy = Strategy {
@@ -201,25 +219,14 @@ fn cancelled(is_deaf: bool) -> Result<(), Broken> {
     };
     let problem = Problem::new(parts)
         .map_err(|error| Broken::new("planner.problem: the problem is well formed", error.to_string(), "no error"))?;
-    check_cancel(
-        &|options, observer| {
-            let mut deaf = Deaf(observer);
-            if is_deaf {
-                solve(&problem, &strategy, options, &mut deaf)
-            } else {
-                solve(&problem, &strategy, options, deaf.0)
-            }
-        },
-        &options(),
-        1,
-    )
+    check_cancel(&|options, observer| run(&problem, &strategy, options, observer), &options(), 1)
 }
 
 /// Passes events on and drops the answers.
-struct Deaf<'a>(&'a mut dyn crate::observe::Observer);
+struct Deaf<'a>(&'a mut dyn Observer);
 
-impl crate::observe::Observer for Deaf<'_> {
-    fn on_event(&mut self, event: &crate::observe::Event<'_>) -> std::ops::ControlFlow<()> {
+impl Observer for Deaf<'_> {
+    fn on_event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
         let _ = self.0.on_event(event);
         Silent.on_event(event)
     }
