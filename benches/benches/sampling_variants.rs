@@ -43,7 +43,7 @@ fn to_solution(c: &mut Criterion) {
             eprintln!("{problem_name}, {name}: {}/{SEEDS} solved in {} iterations", needed.solved, needed.iterations);
             group.throughput(Throughput::Elements(needed.iterations));
             group.bench_function(BenchmarkId::new(name, problem_name), |b| {
-                b.iter(|| run(black_box(&problem), &strategy))
+                b.iter(|| run(black_box(&problem), &strategy));
             });
         }
     }

@@ -20,8 +20,11 @@ use darrt_core::tree::{Edge, Tree};
 
 use crate::stream;
 
+/// A problem's name and how to make it.
+pub type NamedProblem = (&'static str, fn() -> Ready);
+
 /// Problems on which variants are compared, from easy to hard.
-pub const PROBLEMS: [(&str, fn() -> Ready); 4] = [
+pub const PROBLEMS: [NamedProblem; 4] = [
     ("open", problems::open),
     ("two pucks", problems::two_pucks),
     ("four pucks", problems::four_pucks),

@@ -1,7 +1,7 @@
 //! A way around for arm or base: a small bidirectional search between the ends of a blocked transit or transfer.
 //!
 //! # Source
-//! Kuffner, LaValle, RRT-Connect: an efficient approach to single-query path planning, ICRA 2000.
+//! Kuffner and `LaValle`, RRT-Connect: an efficient approach to single-query path planning, ICRA 2000.
 
 use darrt_core::domain::Domain;
 use darrt_core::motion::Instance;
@@ -35,6 +35,9 @@ impl Default for Detour {
         Self { arm_checks: 60, base_checks: 40, step_m: 3.0, shortcuts: 6 }
     }
 }
+
+/// What stops short of its end is kept only if it got at least this far, as a share of the way.
+const WORTH: f64 = 0.1;
 
 /// Which part of the robot moves; the other one stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -209,8 +212,6 @@ impl<M: Manipulator> Search<'_, M> {
         let held_reach_m = self.m.held_reach_m(&self.mode);
         let length = self.m.manipulator().travel_m(&at, q, held_reach_m);
         let target = if length > self.step_m { self.m.robot().interpolate(&at, q, self.step_m / length) } else { *q };
-        // What stops short is kept only if it got anywhere worth the node.
-        const WORTH: f64 = 0.1;
         let share = self.free_share(&at, &target);
         if share < WORTH {
             return None;

@@ -197,7 +197,9 @@ impl SceneValidity {
         *out = AllowedContacts::none();
         for (i, object) in self.objects.iter().enumerate() {
             if let Some(under) = state.mode.support_of(ObjectId::new(i)).and_then(|s| self.supports.get(s.index())) {
-                under.iter().for_each(|body| out.allow(*object, *body, ContactReason::RestsOn));
+                for body in under {
+                    out.allow(*object, *body, ContactReason::RestsOn);
+                }
             }
         }
         if let Some(held) = state.mode.held() {
@@ -213,7 +215,9 @@ impl SceneValidity {
         if let Some((object, surface)) = contacts.support
             && let (Some(object), Some(under)) = (self.objects.get(object.index()), self.supports.get(surface.index()))
         {
-            under.iter().for_each(|body| out.allow(*object, *body, ContactReason::RestsOn));
+            for body in under {
+                out.allow(*object, *body, ContactReason::RestsOn);
+            }
         }
     }
 

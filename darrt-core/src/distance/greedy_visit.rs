@@ -56,7 +56,10 @@ type Open = SmallVec<[(ObjectId, f64); 8]>;
 /// The named objects that are not at their targets, and the sum of their ways.
 pub(super) fn open_objects<D: Domain>(m: &D, from: &State<D>, to: &PartialState<D>) -> (Open, f64) {
     let ways = to.objects().map(|(id, target)| (id, object_travel(m, from, id, target)));
-    let is_open = |id: ObjectId, way: f64| m.objects().get(id.index()).is_some_and(|s| !(way <= s.tolerance()));
+    // A way that is not a number is not met either.
+    let is_open = |id: ObjectId, way: f64| {
+        m.objects().get(id.index()).is_some_and(|space| way.is_nan() || way > space.tolerance())
+    };
     let open: Open = ways.filter(|(id, way)| is_open(*id, *way)).collect();
     let sum = open.iter().map(|(_, way)| way).sum();
     (open, sum)

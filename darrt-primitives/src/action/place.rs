@@ -17,7 +17,7 @@ use crate::mode::{Contacts, Held, SurfaceId, TouchReason};
 use crate::object_space::upright;
 use crate::tabletop::{Tabletop, TabletopState};
 
-/// A target whose bottom is this near to a surface is meant to stand on it; metres (the authors' TABLE_CONTAINS).
+/// A target whose bottom is this near to a surface is meant to stand on it; metres (the authors' `TABLE_CONTAINS`).
 pub const ON_SURFACE_M: f64 = 0.05;
 
 /// The arm's way of one place.
