@@ -3,7 +3,7 @@
 //!
 //! | wish | file |
 //! |---|---|
-//! | follow a straight line of the hand | [`line`] |
+//! | follow a straight line of the hand | [`mod@line`] |
 //! | retreat from what the hand stands at | [`retreat`] |
 //! | go to a configuration, alone or with an object in the hand | [`travel`] |
 //! | find a base and an arm configuration for a hand pose | [`stance`] |

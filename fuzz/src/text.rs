@@ -103,7 +103,7 @@ fn apply(pieces: &mut Vec<Cow<'_, str>>, edit: &Edit) {
         What::Cut(more) => drop(pieces.drain(at..(at + 1 + usize::from(more)).min(count))),
         What::Twice(more) => {
             let again = pieces[at..(at + 1 + usize::from(more)).min(count)].to_vec();
-            pieces.splice(at..at, again);
+            drop(pieces.splice(at..at, again));
         }
         What::Typed(letters) => pieces.insert(at, String::from_utf8_lossy(&letters).into_owned().into()),
     }
@@ -126,7 +126,7 @@ fn pieces(text: &str) -> Vec<&str> {
         let length = if first == '"' {
             rest[1..].find(['"', '\n']).map_or(rest.len(), |end| end + 2)
         } else if is_word(first) {
-            rest.find(|c| !is_word(c)).unwrap_or(rest.len())
+            rest.find(|c: char| !is_word(c)).unwrap_or(rest.len())
         } else {
             first.len_utf8()
         };
