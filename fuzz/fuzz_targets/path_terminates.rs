@@ -38,7 +38,11 @@ fuzz_target!(|case: Case| {
         check_primitive(&m, &**primitive, &from, &to, case.seed).unwrap_or_else(|broken| panic!("{broken}"));
     }
     if let Some(problem) = problem(&m, &from, &to) {
-        let options = ExtendOptions { spacing_m: 0.01 * f64::from(case.spacing.max(1)), max_depth: depth, ..ExtendOptions::default() };
+        let options = ExtendOptions {
+            spacing_m: 0.01 * f64::from(case.spacing.max(1)),
+            max_depth: depth,
+            ..ExtendOptions::default()
+        };
         extension_is_valid(&problem, &options, &to, case.seed);
         search_balances(&problem, case.seed);
     }
