@@ -80,7 +80,9 @@ pub fn build(problem: &ProblemFile) -> Result<Built, PlanningError> {
         .map(|(object, solid)| movable(problem, object, solid, surfaces, &robot))
         .collect::<Result<Vec<_>, _>>()?;
 
-    let settings = settings(problem, robot.arm().side)?;
+    let mut settings = settings(problem, robot.arm().side)?;
+    // A posture that the limits in force forbid is no place to travel through.
+    settings.postures.retain(|posture| space.contains_arm(posture));
     let robot = Arc::new(robot);
     let world = World::new(robot, space, objects, supports, settings)?;
     let start = State {
