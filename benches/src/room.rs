@@ -10,7 +10,7 @@ use darrt_pr2::planning::{Prepared, prepare, strategy};
 use darrt_pr2::problem_file::{ProblemFile, builtin};
 use darrt_pr2::world::{Built, World, WorldState, build};
 use darrt_primitives::manipulator::Manipulator as _;
-use darrt_primitives::validity::{SceneValidity, ValidityOptions};
+use darrt_primitives::validity::SceneValidity;
 use nalgebra::Isometry3;
 
 use crate::stream;
@@ -36,7 +36,7 @@ impl Room {
     /// The room of Plate3.
     pub fn new() -> Self {
         let Built { world, start, scene, .. } = build(&plate3()).unwrap();
-        let validity = SceneValidity::new(&world, scene.bodies(), ValidityOptions::default()).unwrap();
+        let validity = SceneValidity::new(&world);
         Self { world, scene, validity, start }
     }
 

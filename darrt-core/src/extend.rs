@@ -12,10 +12,11 @@ use crate::motion::Instance;
 use crate::observe::accounts::Bucket;
 use crate::partial::PartialState;
 use crate::path::{Path, PathEnd, Trial, path};
+use crate::primitive::Infeasible;
 use crate::problem::Problem;
 use crate::reroute::Reroute;
-use crate::state::State;
-use crate::validity::{Blame, BlockKind};
+use crate::state::{ComponentSet, State};
+use crate::validity::{Blame, BlockKind, FreePrefix};
 
 /// How an extension is discretised and bounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,14 +29,11 @@ pub struct ExtendOptions {
     /// Metres of travel by which a blocked motion is cut shorter than it is free; at least 0. States that almost touch
     /// what blocked them are the nearest to every target behind it, and nothing can be reached from them.
     pub back_off_m: f64,
-    /// How many paths are drawn for one extension, at least 1: the first whose bound states are all valid is taken, else
-    /// the last. PATH sees no obstacles; this only chooses among its draws.
-    pub draws: usize,
 }
 
 impl Default for ExtendOptions {
     fn default() -> Self {
-        Self { spacing_m: 0.1, max_depth: 20, back_off_m: 0.0, draws: 1 }
+        Self { spacing_m: 0.1, max_depth: 20, back_off_m: 0.0 }
     }
 }
 
@@ -49,7 +47,6 @@ impl ExtendOptions {
     /// [`Error::Parameter`] for a spacing that is not finite and positive, or a depth of zero.
     pub fn check(&self) -> Result<(), Error> {
         in_range("spacing_m", self.spacing_m, f64::MIN_POSITIVE, f64::MAX, "finite and positive")?;
-        in_range("draws", self.draws as f64, 1.0, f64::MAX, "at least 1")?;
         in_range("back_off_m", self.back_off_m, 0.0, f64::MAX, "finite and not negative")?;
         in_range("max_depth", self.max_depth as f64, 1.0, f64::MAX, "at least 1")?;
         Ok(())
@@ -103,27 +100,17 @@ pub fn extend_around<D: Domain>(
     rng: &mut dyn Rng,
 ) -> Extension<D> {
     let m = problem.domain();
-    let mut e = path(m, problem.primitives(), from, to, options.max_depth, rng);
-    let mut is_worth_it = None;
-    for _ in 1..options.draws {
-        let Some(r) = reroute else { break };
-        let is_valid = !e.instances.is_empty() && rest_is_valid(problem, r, &e, 0);
-        is_worth_it = Some(is_valid);
-        if is_valid || is_bound_to_repeat(&e) {
-            break;
-        }
-        e = path(m, problem.primitives(), from, to, options.max_depth, rng);
-        is_worth_it = None;
-    }
+    let e = path(m, problem.primitives(), from, to, options.max_depth, rng);
+    let mut prefixes = Prefixes { problem, e: &e, known: e.instances.iter().map(|_| None).collect() };
     let mut reached = Vec::new();
     let mut blocked: Option<(usize, Blame)> = None;
     for index in 0..e.instances.len() {
         let (Some((primitive, instance)), Some(start)) = (e.instances.get(index), e.states.get(index)) else { break };
         let (primitive, mut instance) = (*primitive, Arc::clone(instance));
-        let mut free = problem.validity().free_prefix(m, &instance, start);
+        let mut free = prefixes.of(index);
         if free.blame.is_some()
             && let Some(r) = reroute.filter(|r| r.is_free_to_turn(&instance))
-            && *is_worth_it.get_or_insert_with(|| rest_is_valid(problem, r, &e, index))
+            && prefixes.is_worth_a_detour(r, index)
             && let Some(around) = r.reroute(m, problem.validity(), &instance, start, rng)
         {
             instance = Arc::new(around);
@@ -142,30 +129,60 @@ pub fn extend_around<D: Domain>(
         }
     }
     let buckets = buckets(&e, blocked.as_ref().map(|(index, blame)| (*index, blame.kind)));
-    Extension { reached, is_met: blocked.is_none() && e.end == PathEnd::Met, blame: blocked.map(|(_, b)| b), buckets }
+    let is_met = blocked.is_none() && e.end == PathEnd::Met;
+    let blame = blocked.map(|(_, blame)| blame).or_else(|| last_block(&e));
+    Extension { reached, is_met, blame, buckets }
 }
 
-/// Does the path go straight to a target for the robot alone? Another draw would give the same.
-fn is_bound_to_repeat<D: Domain>(e: &Path<D>) -> bool {
-    e.instances.iter().all(|(_, instance)| instance.object.is_none())
-        && e.trials.iter().all(|(_, trial)| matches!(trial, Trial::Propagated { .. }))
+/// What the primitives last found in the way, if the path ended for want of one that could go on.
+fn last_block<D: Domain>(e: &Path<D>) -> Option<Blame> {
+    e.trials.iter().rev().find_map(|(_, trial)| match trial {
+        Trial::Infeasible(Infeasible::Blocked(blame)) => Some(blame.clone()),
+        _ => None,
+    })
 }
 
 /// How much of a motion that cannot turn aside must be free for the way to it to be worth looking for.
 const WORTH_REACHING: f64 = 0.25;
 
-/// Is what the chain is bound to pass valid: the end of every instance from `index` on, and the beginning of every later
-/// one that cannot turn aside? If not, a way around leads nowhere, and it is dear to find.
-fn rest_is_valid<D: Domain>(problem: &Problem<D>, reroute: &dyn Reroute<D>, e: &Path<D>, index: usize) -> bool {
-    let m = problem.domain();
-    let rest = || e.instances.iter().zip(&e.states).zip(e.states.iter().skip(1)).skip(index);
-    let is_bound = |instance: &Instance<D>| !reroute.is_free_to_turn(instance);
-    rest()
-        .filter(|(((_, i), _), _)| !is_bound(i))
-        .all(|(((_, instance), _), end)| problem.validity().check(m, end, &instance.contacts).is_ok())
-        && rest().filter(|(((_, i), _), _)| is_bound(i)).all(|(((_, instance), start), _)| {
-            problem.validity().free_prefix(m, instance, start).fraction >= WORTH_REACHING
-        })
+/// How far each instance of a path is free; asked once.
+struct Prefixes<'a, D: Domain> {
+    problem: &'a Problem<D>,
+    e: &'a Path<D>,
+    known: Vec<Option<FreePrefix>>,
+}
+
+impl<D: Domain> Prefixes<'_, D> {
+    fn of(&mut self, index: usize) -> FreePrefix {
+        let (Some((_, instance)), Some(start)) = (self.e.instances.get(index), self.e.states.get(index)) else {
+            return FreePrefix::FREE;
+        };
+        if let Some(Some(known)) = self.known.get(index) {
+            return known.clone();
+        }
+        let free = self.problem.validity().free_prefix(self.problem.domain(), instance, start);
+        if let Some(slot) = self.known.get_mut(index) {
+            *slot = Some(free.clone());
+        }
+        free
+    }
+
+    /// Does the chain from `index` on move an object, and is what it is bound to pass valid: the end of every instance
+    /// that may turn aside, and the beginning of every one that may not? If not, a way around leads nowhere that matters,
+    /// and it is dear to find.
+    fn is_worth_a_detour(&mut self, reroute: &dyn Reroute<D>, index: usize) -> bool {
+        let m = self.problem.domain();
+        let rest = self.e.instances.iter().zip(self.e.states.iter().skip(1)).enumerate().skip(index);
+        let moves_object = |instance: &Instance<D>| !instance.moves.is_subset_of(ComponentSet::ROBOT);
+        let is_bound = |instance: &Instance<D>| !reroute.is_free_to_turn(instance);
+        rest.clone().any(|(_, ((_, instance), _))| moves_object(instance))
+            && rest.clone().filter(|(_, ((_, instance), _))| !is_bound(instance)).all(|(_, ((_, instance), end))| {
+                self.problem.validity().check(m, end, &instance.contacts).is_ok()
+            })
+            && rest
+                .filter(|(_, ((_, instance), _))| is_bound(instance))
+                .all(|(i, _)| self.of(i).fraction >= WORTH_REACHING)
+    }
 }
 
 /// What a validity check that stops short without saying why is taken to mean.
@@ -202,12 +219,12 @@ fn buckets<D: Domain>(e: &Path<D>, blocked: Option<(usize, BlockKind)>) -> Small
     let mut buckets: SmallVec<[Bucket; 8]> =
         e.useful.iter().map(|useful| if *useful { Bucket::NotChosen } else { Bucket::NotUseful }).collect();
     for (primitive, trial) in &e.trials {
-        let bucket = match *trial {
+        let bucket = match trial {
             Trial::Infeasible(why) => Bucket::from(why),
             Trial::NoProgress => Bucket::NoProgress,
             Trial::Propagated { first, last } => match blocked {
-                Some((at, _)) if at < first => Bucket::Behind,
-                Some((at, kind)) if at < last => Bucket::from(kind),
+                Some((at, _)) if at < *first => Bucket::Behind,
+                Some((at, kind)) if at < *last => Bucket::from(kind),
                 _ => Bucket::Accepted,
             },
         };

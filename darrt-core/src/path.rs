@@ -1,4 +1,4 @@
-//! `PATH(c1, c2, M, A)`: from one state to a target by random useful primitives, obstacles ignored.
+//! `PATH(c1, c2, M, A)`: from one state to a target by random useful primitives. Whether it is free is not asked here.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::primitive::{Infeasible, Primitive};
 use crate::state::State;
 
 /// What became of one primitive that was tried.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Trial {
     /// It gave the instances `first .. last` of the path.
     Propagated {

@@ -6,12 +6,13 @@ use crate::domain::Domain;
 use crate::motion::Instance;
 use crate::partial::PartialState;
 use crate::state::State;
+use crate::validity::Blame;
 
 /// The instances that one `propagate` returns, in order of execution.
 pub type Instances<D> = Vec<Instance<D>>;
 
 /// Why a primitive that looked useful cannot be propagated: an ordinary outcome, counted, not an error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Infeasible {
     /// No grasp of the object fits.
@@ -26,12 +27,15 @@ pub enum Infeasible {
     OffSupport,
     /// It would end where it began.
     NoProgress,
+    /// The primitive asked its domain what is in the way, and in every try something was; the one of the last try.
+    Blocked(Blame),
 }
 
 /// A manipulation primitive.
 ///
-/// Obstacles are invisible here: `propagate` may not see B (Algorithm 1, `PATH(c1, c2, M, A)`). Several
-/// instances may be returned, also of other kinds: Push returns the transit to the pushing pose first.
+/// Obstacles need not be seen here: whether a motion is free is judged afterwards (Algorithm 1, `PATH(c1, c2, M, A)`).
+/// A primitive whose domain knows the obstacles may ask it, so as not to propose what cannot be. Several instances may be
+/// returned, also of other kinds: Push returns the transit to the pushing pose first.
 ///
 /// # Laws
 /// - If `useful` and `propagate` succeeds, the instances are not empty, the first starts at `from` bit for

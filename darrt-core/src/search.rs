@@ -26,8 +26,9 @@ pub struct Strategy<D: Domain> {
     pub extend: ExtendOptions,
     /// What is tried when a motion is blocked; `None`: the blocked motion is cut short, as in the paper.
     pub reroute: Option<Box<dyn Reroute<D>>>,
-    /// Metres by which a node counts as farther away after each extension from it; at least 0. Zero is the plain arg min
-    /// of Algorithm 1, which asks the nearest node again and again even where nothing leads on (paper section 6.2).
+    /// Metres by which a node, and every other in which the objects stand as in it, counts as farther away after each
+    /// extension from it; at least 0. Zero is the plain arg min of Algorithm 1, which asks the nearest placement again and
+    /// again even where nothing leads on (paper section 6.2).
     pub try_penalty_m: f64,
 }
 
@@ -102,6 +103,7 @@ impl<'p, D: Domain> Darrt<'p, D> {
         let extension =
             extend_around(self.problem, &self.strategy.extend, self.strategy.reroute.as_deref(), from, &s, choose);
         let (is_met, buckets) = (extension.is_met, extension.buckets.clone());
+        self.tree.penalise(t, self.strategy.try_penalty_m);
         let step = self.absorb(t, extension);
         self.accounts.count(&buckets, step.added, is_met, step.blame.as_ref());
         step

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::domain::Domain;
 use crate::motion::Instance;
-use crate::state::State;
+use crate::state::{ComponentSet, State};
 
 /// Index of a node in its tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -43,14 +43,14 @@ pub struct Node<D: Domain> {
     pub state: State<D>,
     /// How it was reached; `None` for the root.
     pub edge: Option<Edge<D>>,
-    /// Metres added to every distance from here, for the extensions from here that have already been made.
-    pub penalty_m: f64,
+    /// Which placement of the objects: nodes between which only the robot moved share one.
+    placement: u32,
     working_point: OnceLock<[f64; 3]>,
 }
 
 impl<D: Domain> Node<D> {
-    fn new(state: State<D>, edge: Option<Edge<D>>, penalty_m: f64) -> Self {
-        Self { state, edge, penalty_m, working_point: OnceLock::new() }
+    fn new(state: State<D>, edge: Option<Edge<D>>, placement: u32) -> Self {
+        Self { state, edge, placement, working_point: OnceLock::new() }
     }
 
     /// The robot's working point, computed when it is first asked for.
@@ -63,6 +63,8 @@ impl<D: Domain> Node<D> {
 #[derive(Debug)]
 pub struct Tree<D: Domain> {
     nodes: Vec<Node<D>>,
+    /// By placement: metres added to every distance from there.
+    penalties_m: Vec<f64>,
 }
 
 impl<D: Domain> Tree<D> {
@@ -71,7 +73,7 @@ impl<D: Domain> Tree<D> {
 
     /// The tree that holds only the start.
     pub fn rooted_at(start: State<D>) -> Self {
-        Self { nodes: vec![Node::new(start, None, 0.0)] }
+        Self { nodes: vec![Node::new(start, None, 0)], penalties_m: vec![0.0] }
     }
 
     /// The root.
@@ -80,9 +82,13 @@ impl<D: Domain> Tree<D> {
     /// Adds a node. `None` if the tree is full.
     pub fn add(&mut self, state: State<D>, edge: Edge<D>) -> Option<NodeId> {
         let id = NodeId(u32::try_from(self.nodes.len()).ok()?);
-        // A child is no fresh start: what was hard for its parent is mostly hard for it.
-        let penalty_m = self.node(edge.parent).map_or(0.0, |parent| parent.penalty_m);
-        self.nodes.push(Node::new(state, Some(edge), penalty_m));
+        let placement = if edge.instance.moves.is_subset_of(ComponentSet::ROBOT) {
+            self.node(edge.parent)?.placement
+        } else {
+            self.penalties_m.push(0.0);
+            u32::try_from(self.penalties_m.len() - 1).ok()?
+        };
+        self.nodes.push(Node::new(state, Some(edge), placement));
         Some(id)
     }
 
@@ -93,11 +99,17 @@ impl<D: Domain> Tree<D> {
         }
     }
 
-    /// Adds `metres` to the penalty of a node.
+    /// Adds `metres` to the penalty of all nodes with the placement of this one.
     pub fn penalise(&mut self, id: NodeId, metres: f64) {
-        if let Some(node) = self.nodes.get_mut(id.index()) {
-            node.penalty_m += metres;
+        let placement = self.node(id).map(|node| node.placement as usize);
+        if let Some(penalty_m) = placement.and_then(|placement| self.penalties_m.get_mut(placement)) {
+            *penalty_m += metres;
         }
+    }
+
+    /// Metres added to every distance from `node`, for the extensions that have already been made from its placement.
+    pub fn penalty_m(&self, node: &Node<D>) -> f64 {
+        self.penalties_m.get(node.placement as usize).copied().unwrap_or(0.0)
     }
 
     /// A node; `None` if the id belongs to another tree.

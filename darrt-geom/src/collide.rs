@@ -242,16 +242,31 @@ impl CollisionModel {
     /// end of the slice have reach 0. Slow bodies near obstacles do not shorten the step of fast ones in the open, which
     /// [`Self::clearance`] cannot offer.
     ///
+    /// Two bodies in `chain` belong to one kinematic chain: they approach each other no faster than the faster of them
+    /// travels, because only the joints between them count. Any other two may each do their worst.
+    ///
     /// # Errors
     /// As [`Self::clearance`].
     ///
     /// # Source
     /// Conservative advancement: B. Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996, section 2.3;
     /// per-pair bounds as in F. Schwarzer, M. Saha, J.-C. Latombe, "Adaptive dynamic collision checking", 2005.
-    pub fn free_step(&self, scratch: &mut Scratch, query: &Query<'_>, reach: &[f64]) -> Result<f64, Hit> {
-        let measure = scan::Steps { reach, clearance: query.clearance.max(0.0) };
+    pub fn free_step(
+        &self,
+        scratch: &mut Scratch,
+        query: &Query<'_>,
+        reach: &[f64],
+        chain: &BodySet,
+    ) -> Result<f64, Hit> {
+        let measure = scan::Steps { reach, chain, clearance: query.clearance.max(0.0) };
         let found = self.scan(scratch, query, query.cap, &measure)?;
         Ok(found.min(query.cap).max(0.0))
+    }
+
+    /// A ball around the body in its own frame: centre and radius in metres. `None` for a body without a bounded solid.
+    pub fn ball(&self, body: BodyIndex) -> Option<(Point3<f64>, f64)> {
+        let registered = self.bodies.get(body.get()).filter(|registered| !registered.solids.is_empty())?;
+        Some((registered.centre, registered.radius))
     }
 
     /// Makes a scratch of another model fit this one (everything unposed), so that mixing them up cannot panic.

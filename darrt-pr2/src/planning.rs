@@ -15,7 +15,7 @@ use darrt_core::search::Strategy;
 use darrt_core::solve::{Outcome, SolveOptions, solve};
 use darrt_core::verify::{Refusal, Verifier};
 use darrt_primitives::detour::Detour;
-use darrt_primitives::validity::{SceneValidity, ValidityOptions};
+use darrt_primitives::validity::SceneValidity;
 
 use crate::export::Exporter;
 use crate::plan_file::{PlanFile, PlannerFacts};
@@ -27,8 +27,6 @@ use crate::world::{self, Built, World, WorldState};
 const NODE_SPACING: f64 = 0.3;
 /// See [`ExtendOptions::back_off_m`].
 const BACK_OFF: f64 = 0.15;
-/// See [`ExtendOptions::draws`].
-const DRAWS: usize = 6;
 /// See [`Strategy::try_penalty_m`].
 const TRY_PENALTY: f64 = 0.5;
 
@@ -131,7 +129,7 @@ pub struct Prepared {
 pub fn prepare(file: &ProblemFile) -> Result<Prepared, PlanningError> {
     check_companions(file)?;
     let Built { world, start, goal, scene } = world::build(file)?;
-    let validity = SceneValidity::new(&world, scene.bodies(), ValidityOptions::default())?;
+    let validity = SceneValidity::new(&world);
     crate::goal_check::check_goal(&world, &goal, &scene)?;
     let exporter = Exporter::new(file, &world)?;
     let verifier = FileVerifier { exporter: Exporter::new(file, &world)? };
@@ -225,7 +223,6 @@ pub fn strategy(
         extend: ExtendOptions {
             spacing_m: NODE_SPACING,
             back_off_m: BACK_OFF,
-            draws: DRAWS,
             ..ExtendOptions::default()
         },
         reroute: Some(Box::new(Detour::default())),

@@ -59,6 +59,8 @@ pub struct Pr2 {
     /// Joint radii by held reach, in steps of [`HELD_STEP`].
     joint_radius: Vec<[f64; 7]>,
     base_radius: f64,
+    /// Levers of the moving links, see [`Pr2Model::link_levers`].
+    levers: Vec<[f64; 7]>,
 }
 
 impl Pr2 {
@@ -91,7 +93,8 @@ impl Pr2 {
         let base_radius = model.travel_bound(side, Self::MAX_HELD_REACH.min(0.3), &rest).base;
         let chain = ArmChain::new(side, rest.torso_m);
         let arm_frames = moving.iter().map(|b| b.frame).collect();
-        Ok(Self { model, arm, chain, rest, links, arm_frames, base_from_link, self_pairs, joint_radius, base_radius })
+        let levers = model.link_levers(side);
+        Ok(Self { levers, model, arm, chain, rest, links, arm_frames, base_from_link, self_pairs, joint_radius, base_radius })
     }
 
     /// The kinematic model.
@@ -230,6 +233,27 @@ impl Manipulator for Pr2 {
         let turn = darrt_core::space::so2::turn(a.base[2], b.base[2]).abs();
         let base = (b.base[0] - a.base[0]).hypot(b.base[1] - a.base[1]) + turn * (self.base_radius + held_reach_m);
         arm + base
+    }
+
+    fn link_travel_m(
+        &self,
+        a: &Configuration<ArmConfiguration>,
+        b: &Configuration<ArmConfiguration>,
+        held_reach_m: f64,
+        out: &mut [f64],
+    ) -> f64 {
+        let joints = crate::arm::joint_differences(&self.arm.limits, &a.arm, &b.arm);
+        let shift = (b.base[0] - a.base[0]).hypot(b.base[1] - a.base[1]);
+        let turn = darrt_core::space::so2::turn(a.base[2], b.base[2]).abs();
+        let drive = shift + turn * (self.base_radius + held_reach_m);
+        let lever_travel =
+            |levers: &[f64; 7]| drive + joints.iter().zip(levers).map(|(d, lever)| d.abs() * lever).sum::<f64>();
+        let (moving, rigid) = out.split_at_mut(self.levers.len().min(out.len()));
+        for (slot, levers) in moving.iter_mut().zip(&self.levers) {
+            *slot = lever_travel(levers);
+        }
+        rigid.fill(drive);
+        lever_travel(&self.radii(held_reach_m))
     }
 
     fn joint_weights_m(&self) -> &[f64] {

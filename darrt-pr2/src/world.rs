@@ -84,7 +84,7 @@ pub fn build(problem: &ProblemFile) -> Result<Built, PlanningError> {
     // A posture that the limits in force forbid is no place to travel through.
     settings.postures.retain(|posture| space.contains_arm(posture));
     let robot = Arc::new(robot);
-    let world = World::new(robot, space, objects, supports, settings)?;
+    let world = World::new(robot, space, objects, supports, geometry.scene.bodies(), settings)?;
     let start = State {
         robot: Configuration { base: problem.robot.base, arm },
         objects: geometry.objects.iter().map(|o| o.world_from_object).collect(),

@@ -20,10 +20,13 @@ use crate::tabletop::{Tabletop, TabletopState};
 /// How hard the search tries.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Detour {
-    /// Straight motions that are checked before it gives up.
-    pub arm_checks: usize,
+    /// States that are checked before it gives up.
+    pub arm_states: usize,
     /// The same for the base, whose space is smaller.
-    pub base_checks: usize,
+    pub base_states: usize,
+    /// Travel bound between two states that are checked, metres. The search looks at samples only: the way that it
+    /// returns is judged like every other motion.
+    pub spacing_m: f64,
     /// Longest straight motion, metres of travel bound.
     pub step_m: f64,
     /// Shortcuts that are tried on the way found.
@@ -32,7 +35,7 @@ pub struct Detour {
 
 impl Default for Detour {
     fn default() -> Self {
-        Self { arm_checks: 60, base_checks: 40, step_m: 3.0, shortcuts: 6 }
+        Self { arm_states: 1500, base_states: 600, spacing_m: 0.12, step_m: 3.0, shortcuts: 6 }
     }
 }
 
@@ -61,7 +64,8 @@ struct Search<'a, M: Manipulator> {
     label: &'static str,
     template: &'a Instance<Tabletop<M>>,
     part: Part,
-    checks_left: usize,
+    states_left: usize,
+    spacing_m: f64,
     step_m: f64,
 }
 
@@ -90,7 +94,7 @@ impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
             (false, true) => Part::Base,
             _ => return None,
         };
-        let checks_left = if part == Part::Arm { self.arm_checks } else { self.base_checks };
+        let states_left = if part == Part::Arm { self.arm_states } else { self.base_states };
         let mut search = Search {
             m,
             validity,
@@ -99,11 +103,13 @@ impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
             label: instance.label,
             template: instance,
             part,
-            checks_left,
+            states_left,
+            spacing_m: self.spacing_m,
             step_m: self.step_m,
         };
         // An end that is itself too near to something cannot be left, whichever way.
         validity.check(m, &search.state_at(&from.robot), &Contacts::default()).ok()?;
+        validity.check(m, &search.state_at(&end.robot), &Contacts::default()).ok()?;
         let mut way = search.connect(&from.robot, &end.robot, rng)?;
         search.shorten(&mut way, self.shortcuts, rng);
         let waypoints: Vec<_> = way.iter().skip(1).map(|q| Waypoint { robot: *q, pushed: 0.0 }).collect();
@@ -140,13 +146,20 @@ impl<M: Manipulator> Search<'_, M> {
         }
     }
 
-    /// How far the straight way from `a` to `b` is free, in `[0, 1]`.
+    /// How far the straight way from `a`, which is free, to `b` seems to be free, in `[0, 1]`.
     fn free_share(&mut self, a: &Configuration<M::Joints>, b: &Configuration<M::Joints>) -> f64 {
-        self.checks_left = self.checks_left.saturating_sub(1);
-        let start = self.state_at(a);
-        let instance = self.instance(&start, &[Waypoint { robot: *b, pushed: 0.0 }]);
-        let free = self.validity.free_prefix(self.m, &instance, &start);
-        if free.blame.is_none() { 1.0 } else { free.fraction }
+        let length_m = self.m.manipulator().travel_m(a, b, self.m.held_reach_m(&self.mode));
+        let steps = (length_m / self.spacing_m).ceil().clamp(1.0, 1000.0);
+        let mut i = 1.0;
+        while i <= steps {
+            self.states_left = self.states_left.saturating_sub(1);
+            let state = self.state_at(&self.m.robot().interpolate(a, b, i / steps));
+            if self.validity.check(self.m, &state, &Contacts::default()).is_err() {
+                return (i - 1.0) / steps;
+            }
+            i += 1.0;
+        }
+        1.0
     }
 
     /// A random configuration of the part that moves: a posture now and then, else anywhere.
@@ -186,7 +199,7 @@ impl<M: Manipulator> Search<'_, M> {
         let mut near = Grove { nodes: vec![(*from, 0)] };
         let mut far = Grove { nodes: vec![(*to, 0)] };
         let mut swapped = false;
-        while self.checks_left > 0 {
+        while self.states_left > 0 {
             let q = self.sample(from, to, rng);
             let (active, other) = if swapped { (&mut far, &mut near) } else { (&mut near, &mut far) };
             if let Some(grown) = self.grow(active, &q) {
@@ -223,7 +236,7 @@ impl<M: Manipulator> Search<'_, M> {
 
     /// Grows `grove` to `q` as far as it goes; the index of the node at `q` if it gets there.
     fn reach(&mut self, grove: &mut Grove<M::Joints>, q: &Configuration<M::Joints>) -> Option<usize> {
-        while self.checks_left > 0 {
+        while self.states_left > 0 {
             let grown = self.grow(grove, q)?;
             let here = grove.nodes.get(grown)?.0;
             if here == *q {

@@ -8,7 +8,7 @@
 //! | how do objects slide when pushed? | [`push`], [`contact`] |
 //! | how can an object be held? | [`grasp`] |
 //! | how does a wish become motions? | [`action`], [`arm_motion`] |
-//! | which stances are worth proposing? | [`stance_check`] |
+//! | who may touch whom, and what is too near? | [`surroundings`] |
 //! | what is in the way, and is there a way around? | [`validity`], [`detour`] |
 //! | what is asked for, and what is a goal? | [`wish`], [`goal`] |
 //!
@@ -27,7 +27,7 @@ pub mod manipulator;
 pub mod mode;
 pub mod object_space;
 pub mod push;
-pub mod stance_check;
+pub mod surroundings;
 pub mod tabletop;
 pub mod validity;
 pub mod wish;

@@ -75,7 +75,7 @@ pub trait Hand: Send + Sync {
 /// - `world_from_tool` of every configuration returned by `inverse` or `inverse_near` is the pose asked for (1e-9), and
 ///   its joints lie within [`Manipulator::limits`].
 /// - No point of the robot moves farther than [`Manipulator::travel_m`] while base and arm move on the straight line
-///   between two configurations.
+///   between two configurations, and no point of a link farther than [`Manipulator::link_travel_m`] says of it.
 /// - `link_poses` follows `world_from_tool`: finger links are rigid to the tool for a constant gap.
 pub trait Manipulator: Send + Sync + 'static {
     /// The arm's joint vector.
@@ -120,6 +120,21 @@ pub trait Manipulator: Send + Sync + 'static {
     /// Metres: bound on the travel of any point of the robot, and of a held object that reaches `held_reach_m` beyond
     /// the tool frame, on the straight line from `a` to `b`.
     fn travel_m(&self, a: &Configuration<Self::Joints>, b: &Configuration<Self::Joints>, held_reach_m: f64) -> f64;
+
+    /// The same link by link: writes for every link, in the order of [`Manipulator::links`], a bound on the travel of any of
+    /// its points, and returns one for a held object. The tighter, the fewer states a motion is checked at; by default
+    /// every link gets [`Manipulator::travel_m`].
+    fn link_travel_m(
+        &self,
+        a: &Configuration<Self::Joints>,
+        b: &Configuration<Self::Joints>,
+        held_reach_m: f64,
+        out: &mut [f64],
+    ) -> f64 {
+        let bound = self.travel_m(a, b, held_reach_m);
+        out.fill(bound);
+        bound
+    }
 
     /// Typical metres of hand travel per unit of each joint: weights of the arm's distance.
     fn joint_weights_m(&self) -> &[f64];

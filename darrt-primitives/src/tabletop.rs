@@ -7,6 +7,7 @@ use darrt_core::domain::Domain;
 use darrt_core::state::{ComponentId, ObjectId, State};
 use darrt_geom::body::Body;
 use darrt_geom::error::GeomError;
+use darrt_geom::scene::FixedBody;
 use darrt_geom::support::SupportSurface;
 use nalgebra::{Isometry3, Point2, Vector3};
 use smallvec::SmallVec;
@@ -17,7 +18,7 @@ use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Mode, SurfaceId};
 use crate::object_space::ObjectSpace;
 use crate::push::edge_stop::{EdgeRule, RimReach};
-use crate::stance_check::StanceCheck;
+use crate::surroundings::{Strictness, Surroundings};
 
 /// A rigid object that can be manipulated, besides its configuration space.
 pub struct Movable {
@@ -123,33 +124,34 @@ pub struct Tabletop<M: Manipulator> {
     movables: Vec<Movable>,
     supports: Vec<Support>,
     settings: ActionSettings<M::Joints>,
-    stances: StanceCheck,
+    surroundings: Arc<Surroundings>,
 }
 
 /// The state of such a domain.
 pub type TabletopState<M> = State<Tabletop<M>>;
 
 impl<M: Manipulator> Tabletop<M> {
-    /// Puts the parts together.
+    /// Puts the parts together; `fixed` are the obstacles, the bodies under the surfaces among them.
     ///
     /// # Errors
-    /// [`GeomError`] if a link of the robot has a shape that cannot be checked.
+    /// [`GeomError`] if there are too many bodies, two share a name, or a shape cannot be checked.
     pub fn new(
         manipulator: Arc<M>,
         robot: ArmSpace<M::Joints>,
         objects: Vec<(ObjectSpace, Movable)>,
         supports: Vec<Support>,
+        fixed: &[FixedBody],
         settings: ActionSettings<M::Joints>,
     ) -> Result<Self, GeomError> {
-        let (objects, movables) = objects.into_iter().unzip();
-        let surfaces: Vec<SupportSurface> = supports.iter().map(|s| s.surface.clone()).collect();
-        let stances = StanceCheck::new(&*manipulator, &surfaces)?;
-        Ok(Self { manipulator, robot, objects, movables, supports, settings, stances })
+        let (objects, movables): (_, Vec<Movable>) = objects.into_iter().unzip();
+        let surroundings = Surroundings::new(&*manipulator, &movables, &supports, fixed, Strictness::default())?;
+        let surroundings = Arc::new(surroundings);
+        Ok(Self { manipulator, robot, objects, movables, supports, settings, surroundings })
     }
 
-    /// The check of stances against the robot itself and the surfaces.
-    pub fn stances(&self) -> &StanceCheck {
-        &self.stances
+    /// Everything that can be touched, and what may touch what.
+    pub fn surroundings(&self) -> &Arc<Surroundings> {
+        &self.surroundings
     }
 
     /// The robot.

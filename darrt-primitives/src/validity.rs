@@ -1,253 +1,60 @@
 //! What is in the way: robot, held and pushed objects against each other and against the scene, over whole motions.
 //!
-//! A motion is judged by conservative advancement: from a state whose smallest distance is `d`, no point can touch
-//! anything before it has travelled `d`, so the next state to look at is that far on. Free therefore means free between
-//! the states looked at as well.
+//! A motion is judged by conservative advancement: a pair of bodies that is `d` apart cannot touch before the two have
+//! travelled `d` towards each other, so the next state to look at is as far on as the most urgent pair allows. Free
+//! therefore means free between the states looked at as well.
 //!
 //! # Source
-//! Mirtich, Impulse-based dynamic simulation of rigid body systems, 1996 (conservative advancement).
+//! Mirtich, Impulse-based dynamic simulation of rigid body systems, 1996 (conservative advancement); Schwarzer, Saha and
+//! Latombe, Adaptive dynamic collision checking for single and multiple articulated robots in complex environments, 2005
+//! (a bound on the travel of each body).
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use darrt_core::domain::Domain;
 use darrt_core::motion::Instance;
 use darrt_core::space::ComponentSpace;
-use darrt_core::state::{ComponentId, ObjectId};
+use darrt_core::space::so2::turn;
+use darrt_core::state::ObjectId;
 use darrt_core::validity::{Blame, BlockKind, FreePrefix, Validity};
-use darrt_geom::allowed::{AllowedContacts, ContactReason};
 use darrt_geom::body_set::{BodyIndex, BodySet};
-use darrt_geom::collide::{CollisionModel, Hit, Query, Scratch};
-use darrt_geom::error::GeomError;
-use darrt_geom::scene::FixedBody;
-use darrt_geom::shape::Shape;
+use darrt_geom::collide::CollisionModel;
 use nalgebra::{Isometry3, Point2};
 
-use crate::manipulator::{LinkGroup, Manipulator};
-use crate::mode::{Contacts, TouchReason};
+use crate::manipulator::Manipulator;
+use crate::mode::Contacts;
+use crate::surroundings::{Surroundings, Worker};
 use crate::tabletop::{Tabletop, TabletopState};
 
-/// How strict the check is; metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ValidityOptions {
-    /// Bodies nearer than this collide. Also the shortest distance that a motion advances at once, so it must be
-    /// positive: it is what the check gives away to be certain between states.
-    pub clearance_m: f64,
-    /// Distances beyond this are not told apart: the farthest that a motion advances at once.
-    pub cap_m: f64,
-}
-
-impl Default for ValidityOptions {
-    fn default() -> Self {
-        Self { clearance_m: 0.002, cap_m: 0.2 }
-    }
-}
-
 /// The scene as seen by a table-top domain.
+#[derive(Debug, Clone)]
 pub struct SceneValidity {
-    model: CollisionModel,
-    options: ValidityOptions,
-    links: Vec<BodyIndex>,
-    objects: Vec<BodyIndex>,
-    fingers: Vec<BodyIndex>,
-    /// By surface: the fixed bodies under it.
-    supports: Vec<Vec<BodyIndex>>,
-    arm_links: BodySet,
-    finger_links: BodySet,
-    all_links: BodySet,
-    workers: Mutex<Vec<Worker>>,
+    surroundings: Arc<Surroundings>,
 }
 
-/// Memory of one check at a time; reused, so that a check allocates nothing.
-struct Worker {
-    scratch: Scratch,
-    poses: Vec<Isometry3<f64>>,
-    allowed: AllowedContacts,
+/// One leg of a motion: everything moves in a straight line of its space.
+struct Leg {
+    /// Parameter at its end.
+    end: f64,
+    /// What moves.
+    moved: BodySet,
+    /// What it may meet: all but what moves rigidly with it.
+    against: BodySet,
+    /// The links, and what is held.
+    chain: BodySet,
+    /// Bound on the metres by which any pair approaches per unit of the parameter.
+    fastest: f64,
 }
 
 impl SceneValidity {
-    /// The check for domain `m` among the `fixed` bodies.
-    ///
-    /// # Errors
-    /// [`GeomError`] if there are too many bodies or a shape cannot be used.
-    pub fn new<M: Manipulator>(
-        m: &Tabletop<M>,
-        fixed: &[FixedBody],
-        options: ValidityOptions,
-    ) -> Result<Self, GeomError> {
-        let mut model = CollisionModel::builder();
-        let robot = m.manipulator();
-        let mut links = Vec::new();
-        for link in robot.links() {
-            links.push(model.add_moving(&link.body)?);
-        }
-        for (i, a) in links.iter().enumerate() {
-            for (j, b) in links.iter().enumerate().skip(i + 1) {
-                if !robot.self_pairs().contains(&(i, j)) && !robot.self_pairs().contains(&(j, i)) {
-                    model.disable(*a, *b)?;
-                }
-            }
-        }
-        let mut objects = Vec::new();
-        for movable in m.movables() {
-            objects.push(model.add_moving(&movable.body)?);
-        }
-        let mut fixed_ids = Vec::new();
-        for body in fixed {
-            let id = model.add_fixed(&body.body, &body.world_from_body)?;
-            // The base rolls on the floor: its links keep their height.
-            if body.body.parts.iter().all(|part| matches!(part.shape, Shape::HalfSpace { .. })) {
-                for (link, _) in links.iter().zip(robot.links()).filter(|(_, link)| link.group == LinkGroup::Base) {
-                    model.disable(*link, id)?;
-                }
-            }
-            fixed_ids.push((Arc::clone(&body.body.name), id));
-        }
-        let supports = m.supports().iter().map(|support| {
-            let under = fixed_ids.iter().filter(|(name, _)| support.bodies.contains(name));
-            under.map(|(_, id)| *id).collect()
-        });
-        let in_group = |wanted: &[LinkGroup]| {
-            let mut set = BodySet::EMPTY;
-            let links = links.iter().zip(robot.links());
-            links.filter(|(_, link)| wanted.contains(&link.group)).for_each(|(id, _)| set.insert(*id));
-            set
-        };
-        let fingers =
-            links.iter().zip(robot.links()).filter(|(_, l)| l.group == LinkGroup::Finger).map(|(id, _)| *id).collect();
-        Ok(Self {
-            supports: supports.collect(),
-            arm_links: in_group(&[LinkGroup::Arm, LinkGroup::Finger]),
-            finger_links: in_group(&[LinkGroup::Finger]),
-            all_links: in_group(&[LinkGroup::Base, LinkGroup::Arm, LinkGroup::Finger]),
-            model: model.build(),
-            options,
-            links,
-            objects,
-            fingers,
-            workers: Mutex::new(Vec::new()),
-        })
+    /// The check for domain `m`.
+    pub fn new<M: Manipulator>(m: &Tabletop<M>) -> Self {
+        Self { surroundings: Arc::clone(m.surroundings()) }
     }
 
     /// The collision model, for reports.
     pub fn model(&self) -> &CollisionModel {
-        &self.model
-    }
-
-    fn worker(&self) -> Worker {
-        let spare = self.workers.lock().ok().and_then(|mut w| w.pop());
-        spare.unwrap_or_else(|| Worker {
-            scratch: self.model.scratch(),
-            poses: vec![Isometry3::identity(); self.links.len() + self.objects.len()],
-            allowed: AllowedContacts::none(),
-        })
-    }
-
-    fn give_back(&self, worker: Worker) {
-        if let Ok(mut workers) = self.workers.lock() {
-            workers.push(worker);
-        }
-    }
-
-    /// Puts every body where it is in `state`.
-    fn pose_all<M: Manipulator>(&self, m: &Tabletop<M>, state: &TabletopState<M>, worker: &mut Worker) {
-        let (link_poses, object_poses) = worker.poses.split_at_mut(self.links.len());
-        m.manipulator().link_poses(&state.robot, state.mode.gap_m(), link_poses);
-        object_poses.iter_mut().zip(&state.objects).for_each(|(slot, pose)| *slot = *pose);
-        self.model.set_poses(&mut worker.scratch, &worker.poses);
-    }
-
-    /// Puts every body where it is in `state`, knowing that the last one was `before`. Returns what may have moved.
-    fn pose_moved<M: Manipulator>(
-        &self,
-        m: &Tabletop<M>,
-        before: &TabletopState<M>,
-        state: &TabletopState<M>,
-        worker: &mut Worker,
-    ) -> BodySet {
-        let (link_poses, object_poses) = worker.poses.split_at_mut(self.links.len());
-        let mut moved = if before.robot.base != state.robot.base {
-            self.all_links
-        } else if before.robot.arm != state.robot.arm {
-            self.arm_links
-        } else if before.mode.gap_m() != state.mode.gap_m() {
-            self.finger_links
-        } else {
-            BodySet::EMPTY
-        };
-        if !moved.is_empty() {
-            m.manipulator().link_poses(&state.robot, state.mode.gap_m(), link_poses);
-            for (id, pose) in self.links.iter().zip(link_poses.iter()) {
-                if moved.contains(*id) {
-                    self.model.set_pose(&mut worker.scratch, *id, pose);
-                }
-            }
-        }
-        for (((id, slot), a), b) in self.objects.iter().zip(object_poses).zip(&before.objects).zip(&state.objects) {
-            if a != b {
-                *slot = *b;
-                self.model.set_pose(&mut worker.scratch, *id, b);
-                moved.insert(*id);
-            }
-        }
-        moved
-    }
-
-    /// What may touch in this mode during an instance with these contacts.
-    fn allow<M: Manipulator>(&self, state: &TabletopState<M>, contacts: &Contacts, out: &mut AllowedContacts) {
-        *out = AllowedContacts::none();
-        for (i, object) in self.objects.iter().enumerate() {
-            if let Some(under) = state.mode.support_of(ObjectId::new(i)).and_then(|s| self.supports.get(s.index())) {
-                for body in under {
-                    out.allow(*object, *body, ContactReason::RestsOn);
-                }
-            }
-        }
-        if let Some(held) = state.mode.held() {
-            self.allow_fingers(held.object, ContactReason::Held, out);
-        }
-        if let Some((object, reason)) = contacts.fingers {
-            let reason = match reason {
-                TouchReason::Push => ContactReason::PushContact,
-                _ => ContactReason::GraspContact,
-            };
-            self.allow_fingers(object, reason, out);
-        }
-        if let Some((object, surface)) = contacts.support
-            && let (Some(object), Some(under)) = (self.objects.get(object.index()), self.supports.get(surface.index()))
-        {
-            for body in under {
-                out.allow(*object, *body, ContactReason::RestsOn);
-            }
-        }
-    }
-
-    fn allow_fingers(&self, object: ObjectId, reason: ContactReason, out: &mut AllowedContacts) {
-        if let Some(object) = self.objects.get(object.index()) {
-            self.fingers.iter().for_each(|finger| out.allow(*finger, *object, reason));
-        }
-    }
-
-    /// Smallest distance over the pairs of one body in `moved` and one in `against`, up to the cap.
-    fn clearance(&self, worker: &mut Worker, moved: &BodySet, against: &BodySet) -> Result<f64, Hit> {
-        let Worker { scratch, allowed, .. } = worker;
-        let ValidityOptions { clearance_m: clearance, cap_m: cap } = self.options;
-        self.model.lower_bound(scratch, &Query { moved, against, allowed, clearance, cap })
-    }
-
-    fn blame(&self, hit: &Hit) -> Blame {
-        let is_object = |id: &BodyIndex| self.objects.contains(id);
-        let is_link = |id: &BodyIndex| self.all_links.contains(*id);
-        let (a, b) = (&hit.first, &hit.second);
-        let kind = match (is_link(a) || is_link(b), is_object(a) || is_object(b)) {
-            (true, true) => BlockKind::RobotObject,
-            (true, false) if is_link(a) && is_link(b) => BlockKind::RobotItself,
-            (true, false) => BlockKind::RobotFixed,
-            (false, true) if is_object(a) && is_object(b) => BlockKind::ObjectObject,
-            (false, _) => BlockKind::ObjectFixed,
-        };
-        let place = [hit.place.x, hit.place.y, hit.place.z];
-        let name = |id: &BodyIndex| self.model.name(*id).map_or_else(|| "unknown body".into(), Arc::clone);
-        Blame { kind, first: name(a), second: name(b), place }
+        self.surroundings.model()
     }
 
     /// Limits and supports: everything that needs no geometry of bodies.
@@ -304,12 +111,81 @@ impl SceneValidity {
         state: &TabletopState<M>,
         moved: &BodySet,
     ) -> Result<(), Blame> {
-        for (i, (body, pose)) in self.objects.iter().zip(&state.objects).enumerate() {
+        for (i, (body, pose)) in self.surroundings.objects().iter().zip(&state.objects).enumerate() {
             if moved.contains(*body) {
                 Self::check_object(m, state, ObjectId::new(i), pose)?;
             }
         }
         Ok(())
+    }
+
+    /// What moves from `a`, where every body stands, to `b`, and how fast each body travels: written to `worker.reach`,
+    /// metres per unit of the parameter, of which the leg takes `span`.
+    fn leg<M: Manipulator>(
+        &self,
+        m: &Tabletop<M>,
+        a: &TabletopState<M>,
+        b: &TabletopState<M>,
+        (end, span): (f64, f64),
+        worker: &mut Worker,
+    ) -> Leg {
+        let around = &*self.surroundings;
+        let mut moved = around.moved(a, b);
+        let mut chain = *around.all_links();
+        let drives = a.robot.arm == b.robot.arm && a.robot.base != b.robot.base;
+        let mut held_travel = 0.0;
+        if a.robot != b.robot {
+            let reach_m = m.held_reach_m(&a.mode);
+            held_travel = m.manipulator().link_travel_m(&a.robot, &b.robot, reach_m, &mut worker.link_travel);
+        } else {
+            worker.link_travel.fill(0.0);
+        }
+        worker.reach.fill(0.0);
+        let mut fastest = 0.0_f64;
+        for ((id, travel), pose) in around.links().iter().zip(&worker.link_travel).zip(&worker.poses) {
+            let travel = if drives { travel.min(self.drive_travel(*id, pose, a, b)) } else { *travel };
+            if let Some(slot) = worker.reach.get_mut(id.get()) {
+                *slot = travel / span;
+                fastest = fastest.max(*slot);
+            }
+        }
+        let fastest_link = fastest;
+        for (i, ((id, from), to)) in around.objects().iter().zip(&a.objects).zip(&b.objects).enumerate() {
+            let Some(slot) = worker.reach.get_mut(id.get()) else { continue };
+            if a.mode.held().is_some_and(|held| held.object.index() == i) {
+                chain.insert(*id);
+                let travel = if drives { held_travel.min(self.drive_travel(*id, from, a, b)) } else { held_travel };
+                *slot = travel / span;
+                fastest = fastest.max(*slot);
+            } else {
+                *slot = (to.translation.vector - from.translation.vector).norm() / span;
+                fastest = fastest.max(fastest_link + *slot);
+            }
+        }
+        // A held object that happens to end where it began moves in between.
+        if let Some(id) = a.mode.held().and_then(|held| around.objects().get(held.object.index()))
+            && a.robot != b.robot
+        {
+            moved.insert(*id);
+        }
+        // A robot that drives with its arm at rest moves as one body, with what it holds.
+        let against = if drives { BodySet::ALL.difference(&moved) } else { BodySet::ALL };
+        Leg { end, moved, against, chain, fastest }
+    }
+
+    /// Bound on the travel of a body, now at `pose`, that turns about the axis of the base and drives with it.
+    fn drive_travel<M: Manipulator>(
+        &self,
+        body: BodyIndex,
+        pose: &Isometry3<f64>,
+        a: &TabletopState<M>,
+        b: &TabletopState<M>,
+    ) -> f64 {
+        let Some((centre, radius)) = self.model().ball(body) else { return f64::INFINITY };
+        let [x, y, yaw] = a.robot.base;
+        let drive = (b.robot.base[0] - x).hypot(b.robot.base[1] - y);
+        let centre = pose * centre;
+        drive + turn(yaw, b.robot.base[2]).abs() * ((centre.x - x).hypot(centre.y - y) + radius)
     }
 
     fn advance<M: Manipulator>(
@@ -319,52 +195,76 @@ impl SceneValidity {
         from: &TabletopState<M>,
         worker: &mut Worker,
     ) -> FreePrefix {
-        let length_m = instance.motion.length();
+        let around = &*self.surroundings;
+        let robot = m.manipulator();
         let mut here = from.clone();
         let mut next = from.clone();
         // The entry is judged with everything that this instance may touch: exemptions of the last one are over.
         // Its mode is that of the interior, in which the motion begins at once.
         instance.motion.at_into(m, f64::MIN_POSITIVE, &mut here);
-        self.allow(&here, &instance.contacts, &mut worker.allowed);
-        self.pose_all(m, &here, worker);
-        if let Err(hit) = self.clearance(worker, &BodySet::ALL, &BodySet::ALL) {
-            return FreePrefix::blocked(0.0, self.blame(&hit));
+        around.allow(&here, &instance.contacts, &mut worker.allowed);
+        around.pose_all(robot, &here, worker);
+        if let Err(hit) = around.lower_bound(worker, &BodySet::ALL, &BodySet::ALL, 0.0) {
+            return FreePrefix::blocked(0.0, around.blame(&hit));
         }
-        // Fixed pairs are settled; from here on only what moves counts. The first step is as short as can be because
-        // the clearance of what will move is not yet known on its own.
+        // Fixed pairs are settled; from here on only what moves counts.
         let mut t = 0.0;
-        let mut ahead_m = self.options.clearance_m;
-        // A pushed object and the link beside it may both move, towards each other.
-        let slides = |id: &ObjectId| instance.moves.contains(ComponentId::Object(*id)) && here.mode.held().is_none();
-        let closing = if instance.object.as_ref().is_some_and(slides) { 2.0 } else { 1.0 };
-        while t < 1.0 {
-            let step = if length_m > 0.0 { ahead_m.max(self.options.clearance_m) / (closing * length_m) } else { 1.0 };
-            let t_next = if t + step >= 1.0 { 1.0 } else { t + step };
-            instance.motion.at_into(m, t_next, &mut next);
-            let moved = self.pose_moved(m, &here, &next, worker);
-            // A robot that drives with its arm at rest moves as one body, with what it holds.
-            let drives = here.robot.arm == next.robot.arm && here.mode.gap_m() == next.mode.gap_m();
-            let against = if drives { BodySet::ALL.difference(&moved) } else { BodySet::ALL };
-            let blame = match self.clearance(worker, &moved, &against) {
-                Ok(distance) => {
-                    ahead_m = distance;
-                    self.check_moved_objects(m, &next, &moved).err()
-                }
-                Err(hit) => Some(self.blame(&hit)),
-            };
-            if let Some(blame) = blame {
-                return FreePrefix::blocked(t, blame);
+        let ends = instance.motion.knots().iter().copied().filter(|knot| *knot > 0.0 && *knot < 1.0);
+        for end in ends.chain([1.0]) {
+            if end <= t {
+                continue;
             }
-            std::mem::swap(&mut here, &mut next);
-            t = t_next;
+            instance.motion.at_into(m, end, &mut next);
+            next.mode.clone_from(&here.mode);
+            let leg = self.leg(m, &here, &next, (end, end - t), worker);
+            if let Err((free, blame)) = self.advance_leg(m, instance, &leg, t, &mut here, &mut next, worker) {
+                return FreePrefix::blocked(free, blame);
+            }
+            t = end;
         }
         // Letting go or closing changes the gripper: the final state is judged in its own mode.
-        self.pose_all(m, &here, worker);
-        self.allow(&here, &instance.contacts, &mut worker.allowed);
-        match self.clearance(worker, &BodySet::ALL, &BodySet::ALL) {
+        instance.motion.at_into(m, 1.0, &mut here);
+        around.pose_all(robot, &here, worker);
+        around.allow(&here, &instance.contacts, &mut worker.allowed);
+        match around.lower_bound(worker, &BodySet::ALL, &BodySet::ALL, 0.0) {
             Ok(_) => FreePrefix::FREE,
             // The end itself is blocked: everything before it is free.
-            Err(hit) => FreePrefix::blocked(1.0 - f64::EPSILON, self.blame(&hit)),
+            Err(hit) => FreePrefix::blocked(1.0 - f64::EPSILON, around.blame(&hit)),
+        }
+    }
+
+    /// Advances `here`, which stands at `t` and is free, to the end of the leg.
+    #[expect(clippy::too_many_arguments, reason = "the loop's state, kept by the caller from leg to leg")]
+    fn advance_leg<M: Manipulator>(
+        &self,
+        m: &Tabletop<M>,
+        instance: &Instance<Tabletop<M>>,
+        leg: &Leg,
+        mut t: f64,
+        here: &mut TabletopState<M>,
+        next: &mut TabletopState<M>,
+        worker: &mut Worker,
+    ) -> Result<(), (f64, Blame)> {
+        let around = &*self.surroundings;
+        let strictness = around.strictness();
+        // Farther than this no pair is told apart; nearer than this every pair may go unseen.
+        let (cap, least) = (strictness.cap_m / leg.fastest, strictness.clearance_m / leg.fastest);
+        // The last state that was found free.
+        let mut free = t;
+        loop {
+            let pairs = (&leg.moved, &leg.against, &leg.chain);
+            let ahead = around.free_step(worker, pairs, cap.min(leg.end - t)).map_err(|hit| (free, around.blame(&hit)))?;
+            self.check_moved_objects(m, here, &leg.moved).map_err(|blame| (free, blame))?;
+            free = t;
+            if t >= leg.end {
+                return Ok(());
+            }
+            t = if t + ahead + least >= leg.end { leg.end } else { t + ahead + least };
+            instance.motion.at_into(m, t, next);
+            // At the end of a motion the mode may change, which is judged apart.
+            next.mode.clone_from(&here.mode);
+            around.pose(m.manipulator(), next, &leg.moved, worker);
+            std::mem::swap(here, next);
         }
     }
 }
@@ -372,24 +272,10 @@ impl SceneValidity {
 impl<M: Manipulator> Validity<Tabletop<M>> for SceneValidity {
     fn check(&self, m: &Tabletop<M>, state: &TabletopState<M>, contacts: &Contacts) -> Result<(), Blame> {
         Self::check_rules(m, state)?;
-        let mut worker = self.worker();
-        self.allow(state, contacts, &mut worker.allowed);
-        self.pose_all(m, state, &mut worker);
-        let result = self.clearance(&mut worker, &BodySet::ALL, &BodySet::ALL).map(|_| ());
-        self.give_back(worker);
-        result.map_err(|hit| self.blame(&hit))
+        self.surroundings.check(m.manipulator(), state, contacts)
     }
 
     fn free_prefix(&self, m: &Tabletop<M>, instance: &Instance<Tabletop<M>>, from: &TabletopState<M>) -> FreePrefix {
-        let mut worker = self.worker();
-        let free = self.advance(m, instance, from, &mut worker);
-        self.give_back(worker);
-        free
-    }
-}
-
-impl std::fmt::Debug for SceneValidity {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("SceneValidity").field("options", &self.options).finish_non_exhaustive()
+        self.surroundings.with_worker(|worker| self.advance(m, instance, from, worker))
     }
 }

@@ -42,7 +42,8 @@ pub(super) fn nearest_departure<D: Domain>(
     for (id, node) in tree.iter() {
         let from = Departure { state: &node.state, working_point: Some(node.working_point(m)) };
         let bound = best.map_or(f64::INFINITY, |(_, least)| least);
-        let length = tour(&from, bound - node.penalty_m) + node.penalty_m;
+        let penalty_m = tree.penalty_m(node);
+        let length = tour(&from, bound - penalty_m) + penalty_m;
         if best.is_none_or(|(_, least)| length < least || (least.is_nan() && !length.is_nan())) {
             best = Some((id, length));
         }

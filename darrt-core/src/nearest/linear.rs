@@ -9,7 +9,7 @@ use crate::tree::{NodeId, Tree};
 pub fn nearest_by<D: Domain>(tree: &Tree<D>, measure: impl Fn(&State<D>) -> f64) -> Option<NodeId> {
     let mut best: Option<(NodeId, f64)> = None;
     for (id, node) in tree.iter() {
-        let d = measure(&node.state) + node.penalty_m;
+        let d = measure(&node.state) + tree.penalty_m(node);
         if best.is_none_or(|(_, least)| d < least || (least.is_nan() && !d.is_nan())) {
             best = Some((id, d));
         }

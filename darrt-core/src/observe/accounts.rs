@@ -29,7 +29,7 @@ pub enum Bucket {
     NoProgress,
     /// Propagated behind a step that was already blocked.
     Behind,
-    /// Blocked: robot against obstacle.
+    /// Blocked, on the way or already where the primitive looked for a way: robot against obstacle.
     RobotFixed,
     /// Blocked: robot against itself.
     RobotItself,
@@ -95,8 +95,8 @@ impl Bucket {
     }
 }
 
-impl From<Infeasible> for Bucket {
-    fn from(why: Infeasible) -> Self {
+impl From<&Infeasible> for Bucket {
+    fn from(why: &Infeasible) -> Self {
         match why {
             Infeasible::NoGrasp => Self::NoGrasp,
             Infeasible::NoContact => Self::NoContact,
@@ -104,6 +104,7 @@ impl From<Infeasible> for Bucket {
             Infeasible::Limits => Self::Limits,
             Infeasible::OffSupport => Self::OffSupport,
             Infeasible::NoProgress => Self::NoProgress,
+            Infeasible::Blocked(blame) => Self::from(blame.kind),
         }
     }
 }

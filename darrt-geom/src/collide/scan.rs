@@ -4,7 +4,7 @@ use super::pair::{self, Bound};
 use super::solid::{Kind, Plane, Solid};
 use super::{CollisionModel, Hit, Poses, Query, Scratch};
 use crate::batch::PlacedBox;
-use crate::body_set::BodyIndex;
+use crate::body_set::{BodyIndex, BodySet};
 use crate::narrow::{self, Gap, Posed};
 use crate::place;
 use nalgebra::{Isometry3, Point3};
@@ -50,6 +50,7 @@ impl Measure for Metres {
 /// How much of a motion's parameter the distance is worth.
 pub(super) struct Steps<'a> {
     pub(super) reach: &'a [f64],
+    pub(super) chain: &'a BodySet,
     pub(super) clearance: f64,
 }
 
@@ -57,7 +58,7 @@ impl Steps<'_> {
     #[inline]
     fn speed(&self, a: BodyIndex, b: BodyIndex) -> f64 {
         let of = |body: BodyIndex| self.reach.get(body.get()).copied().unwrap_or(0.0);
-        of(a) + of(b)
+        if self.chain.contains(a) && self.chain.contains(b) { of(a).max(of(b)) } else { of(a) + of(b) }
     }
 }
 

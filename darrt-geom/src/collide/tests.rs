@@ -208,7 +208,7 @@ proptest! {
         let velocities: Vec<Vector3<f64>> = along.into_iter().map(Vector3::from).collect();
         let reach: Vec<f64> = velocities.iter().take(world.moving).map(Vector3::norm).collect();
         let query = Query { moved: &BodySet::ALL, against: &BodySet::ALL, allowed: &none, clearance, cap: 2.0 };
-        let Ok(step) = model.free_step(&mut scratch, &query, &reach) else {
+        let Ok(step) = model.free_step(&mut scratch, &query, &reach, &BodySet::EMPTY) else {
             prop_assert!(model.lower_bound(&mut scratch, &query).is_err());
             return Ok(());
         };

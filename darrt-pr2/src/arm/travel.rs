@@ -10,7 +10,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use super::Side;
 use crate::forward::{FOREARM, Frame, SHOULDER_X, SHOULDER_Y, TOOL, UPPER_ARM, UPPER_ARM_OFFSET};
 use crate::gripper::{self, MAX_FINGER_ANGLE};
-use crate::model::{Pr2Model, WholeBody};
+use crate::model::{ArmBody, Pr2Model, WholeBody};
 
 /// Finger angles at which the hand is measured.
 const FINGER_SAMPLES: u32 = 64;
@@ -59,6 +59,55 @@ impl Pr2Model {
             wrist,
             roll,
         ]
+    }
+
+    /// Levers of one arm, m, a row per link in the order of [`arm_bodies`](Self::arm_bodies): largest distance from the axis
+    /// of each joint to any point of the link, 0 for a joint that does not move it; fingers at any opening.
+    pub fn link_levers(&self, side: Side) -> Vec<[f64; 7]> {
+        self.arm_bodies(side).iter().map(|arm_body| self.levers_of(side, arm_body)).collect()
+    }
+
+    fn levers_of(&self, side: Side, arm_body: &ArmBody) -> [f64; 7] {
+        let mut own = Extent::default();
+        match arm_body.frame {
+            // The whole hand's extent bounds each finger's at any opening; they differ by centimetres only.
+            Frame::LeftFinger | Frame::RightFinger | Frame::LeftFingerTip | Frame::RightFingerTip => {
+                own = self.hand_extent(side);
+            }
+            _ => {
+                if let Some(body) = self.body(arm_body.link) {
+                    own.cover(body, &Isometry3::identity());
+                }
+            }
+        }
+        let mut levers = [0.0; 7];
+        let centre = own.centre;
+        let beyond_lift = match arm_body.frame {
+            Frame::ShoulderPan => {
+                levers[0] = own.axis_z;
+                return levers;
+            }
+            Frame::ShoulderLift => centre,
+            Frame::UpperArmRoll => {
+                levers[2] = own.axis_x;
+                centre
+            }
+            Frame::ElbowFlex | Frame::ForearmRoll => {
+                (levers[2], levers[3]) = (centre, centre);
+                levers[4] = if arm_body.frame == Frame::ForearmRoll { own.axis_x } else { 0.0 };
+                UPPER_ARM + centre
+            }
+            _ => {
+                let beyond_elbow = FOREARM + centre;
+                (levers[2], levers[3]) = (beyond_elbow, beyond_elbow);
+                (levers[4], levers[5]) = (centre, centre);
+                levers[6] = if arm_body.frame == Frame::WristFlex { 0.0 } else { own.axis_x };
+                UPPER_ARM + beyond_elbow
+            }
+        };
+        levers[1] = beyond_lift;
+        levers[0] = UPPER_ARM_OFFSET + beyond_lift;
+        levers
     }
 
     /// Radii of one arm's joints and of the base; the arm may be anywhere, everything else stands as in `rest`.
@@ -181,6 +230,7 @@ mod tests {
     fn no_corner_travels_farther_than_the_bound() {
         let model = Pr2Model::embedded().unwrap();
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(21);
+        let levers = Side::BOTH.map(|side| model.link_levers(side));
         for round in 0..150 {
             let side = Side::BOTH[round % 2];
             let i = side.index();
@@ -205,8 +255,14 @@ mod tests {
             let (start, end) = (model.link_poses(&from), model.link_poses(&to));
             for (link, (a, b)) in start.iter().zip(&end).enumerate() {
                 let Some(body) = model.body(link) else { continue };
+                let row = model.arm_bodies(side).iter().position(|b| b.link == link);
+                let own = row.map_or(f64::INFINITY, |row| {
+                    let base = shift + (to.base[2] - from.base[2]).abs() * model.travel_bound(side, 0.0, &from).base;
+                    base + levers[side.index()][row].iter().zip(&d).map(|(r, d)| r * d.abs()).sum::<f64>()
+                });
                 for (p, q) in corners_of(body, a).zip(corners_of(body, b)) {
-                    assert!((q - p).norm() <= bound + 1e-12, "{} {} > {bound}", body.name, (q - p).norm());
+                    let travel = (q - p).norm();
+                    assert!(travel <= bound.min(own) + 1e-12, "{} {travel} > {bound}, {own}", body.name);
                 }
             }
         }

@@ -8,7 +8,7 @@ use rand::{Rng, RngExt};
 
 use super::push::approach;
 use super::retreat::retreat;
-use super::stance::{Wanted, stance};
+use super::stance::{Probe, Refused, Wanted, stance};
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::grasp::rim::rim_is_graspable;
@@ -30,7 +30,7 @@ struct Way<J> {
 ///
 /// # Errors
 /// [`Infeasible::NoGrasp`] if no grasp fits where the object stands (a plate whose rim does not overhang),
-/// [`Infeasible::Unreachable`] if the arm reaches none of those tried.
+/// [`Infeasible::Blocked`] or [`Infeasible::Unreachable`] if the arm comes to none of those tried.
 pub fn pick<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
@@ -42,7 +42,11 @@ pub fn pick<M: Manipulator>(
     if movable.grasps.is_empty() {
         return Err(Infeasible::NoGrasp);
     }
+    let mut chain = Chain::at(from);
+    retreat(m, &mut chain)?;
+    let beside = from.mode.engaged_with(object).ok_or(Infeasible::NoGrasp)?;
     let mut fitted = 0;
+    let mut why = Infeasible::NoGrasp;
     for _ in 0..m.settings().grasp_tries * GRASPS_PER_TRY {
         let Some(family) = movable.grasps.get(rng.random_range(0..movable.grasps.len())) else { continue };
         let grasp = family.sample(rng);
@@ -52,15 +56,27 @@ pub fn pick<M: Manipulator>(
         fitted += 1;
         let at_grasp = grasp.world_from_tool(pose);
         let tries = m.settings().base_tries.div_ceil(2);
-        let wanted = Wanted { world_from_tool: &at_grasp, gap_m: grasp.open_gap_m, tries };
-        if let Some(way) = stance(m, from, &wanted, rng, |q| way_of(m, q, &at_grasp, &grasp, movable)) {
-            return assemble(m, from, object, pose, &grasp, &way, rng);
+        let wanted = Wanted { world_from_tool: &at_grasp, tries };
+        let mode = beside.opened_to(grasp.open_gap_m).ok_or(Infeasible::NoGrasp)?;
+        let mut probe = Probe::new(m, from, mode);
+        let picking = Picking { object, pose, grasp: &grasp, at_grasp: &at_grasp };
+        match stance(m, from, &wanted, rng, |q| way_of(m, q, &picking, movable, &mut probe)) {
+            Ok(way) => return assemble(m, chain, &picking, &way, rng),
+            Err(refused) => why = refused,
         }
         if fitted >= m.settings().grasp_tries {
             break;
         }
     }
-    Err(if fitted == 0 { Infeasible::NoGrasp } else { Infeasible::Unreachable })
+    Err(why)
+}
+
+/// What is picked up, and how.
+struct Picking<'a> {
+    object: ObjectId,
+    pose: &'a Isometry3<f64>,
+    grasp: &'a Grasp,
+    at_grasp: &'a Isometry3<f64>,
 }
 
 /// How many grasps are drawn for one that is tried: most rim grasps meet the table.
@@ -86,35 +102,54 @@ fn fits<M: Manipulator>(
 fn way_of<M: Manipulator>(
     m: &Tabletop<M>,
     q: &Configuration<M::Joints>,
-    at_grasp: &Isometry3<f64>,
-    grasp: &Grasp,
+    picking: &Picking<'_>,
     movable: &Movable,
-) -> Option<Way<M::Joints>> {
+    probe: &mut Probe<'_, M>,
+) -> Result<Way<M::Joints>, Refused> {
+    let Picking { object, grasp, at_grasp, .. } = *picking;
+    let open = straddling(object, grasp);
+    probe.check(q, &open)?;
     let back = at_grasp.rotation * Vector3::new(-grasp.approach_m, 0.0, 0.0);
     let out = line::follow(m, &q.base, &q.arm, at_grasp, &back);
     if out.share < m.settings().least_line_share {
-        return None;
+        return Err(Refused::Unreachable);
     }
+    let robot = |arm: Option<&M::Joints>| {
+        arm.map(|arm| Configuration { base: q.base, arm: *arm }).ok_or(Refused::Unreachable)
+    };
+    probe.check(&robot(out.arms.last())?, &Contacts::default())?;
     let [least, best] = movable.lift_m;
     let up = line::follow(m, &q.base, &q.arm, at_grasp, &(Vector3::z() * best));
     if up.share * best < least {
-        return None;
+        return Err(Refused::Unreachable);
     }
+    check_lifted(m, picking, &robot(up.arms.last())?, probe)?;
     let in_ = out.arms.iter().rev().copied().chain([q.arm]).collect();
-    Some(Way { base: q.base, in_, up: up.arms })
+    Ok(Way { base: q.base, in_, up: up.arms })
+}
+
+/// Is nothing in the way of the object and the hand at the end of the lift?
+fn check_lifted<M: Manipulator>(
+    m: &Tabletop<M>,
+    picking: &Picking<'_>,
+    lifted: &Configuration<M::Joints>,
+    probe: &mut Probe<'_, M>,
+) -> Result<(), Refused> {
+    let beside = probe.state_mut().mode.clone();
+    let tool_from_object = picking.at_grasp.inverse() * picking.pose;
+    let held = Held { object: picking.object, tool_from_object };
+    let mode = beside.attached(held, picking.grasp.closed_gap_m).ok_or(Refused::Unreachable)?;
+    Ok(Probe::new(m, probe.state_mut(), mode).check(lifted, &Contacts::default())?)
 }
 
 fn assemble<M: Manipulator>(
     m: &Tabletop<M>,
-    from: &TabletopState<M>,
-    object: ObjectId,
-    pose: &Isometry3<f64>,
-    grasp: &Grasp,
+    mut chain: Chain<M>,
+    picking: &Picking<'_>,
     way: &Way<M::Joints>,
     rng: &mut dyn Rng,
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
-    let mut chain = Chain::at(from);
-    retreat(m, &mut chain)?;
+    let Picking { object, pose, grasp, .. } = *picking;
     let support = chain.end.mode.support_of(object).ok_or(Infeasible::OffSupport)?;
     approach(m, &mut chain, object, way.base, &way.in_, grasp.open_gap_m, straddling(object, grasp), rng)?;
 

@@ -3,12 +3,12 @@
 use darrt_core::domain::Domain;
 use darrt_core::motion::Instance;
 use darrt_core::primitive::{Infeasible, Instances};
-use darrt_core::state::{ComponentId, ComponentSet};
+use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
 use nalgebra::{Isometry3, Vector3};
 use rand::{Rng, RngExt};
 
 use super::retreat::retreat;
-use super::stance::{Wanted, stance};
+use super::stance::{Probe, Refused, Wanted, stance};
 use super::travel::travel;
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
@@ -33,7 +33,7 @@ struct Way<J> {
 ///
 /// # Errors
 /// [`Infeasible::NoGrasp`] if nothing is held, [`Infeasible::OffSupport`] if the target does not lie on a surface
-/// allowed for the object, [`Infeasible::Unreachable`].
+/// allowed for the object, [`Infeasible::Blocked`], [`Infeasible::Unreachable`].
 pub fn place<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
@@ -47,17 +47,29 @@ pub fn place<M: Manipulator>(
         0 => -Vector3::z(),
         n => directions.get(rng.random_range(0..n)).copied().unwrap_or(-Vector3::z()),
     };
-    let gap_m = release_gap_m(m, from);
+    let released = from.mode.released_on(surface, release_gap_m(m, from)).ok_or(Infeasible::NoGrasp)?;
+    let mut why = Infeasible::Unreachable;
     for _ in 0..YAW_TRIES {
         let standing = standing_pose(m, &held, surface, target, rng).ok_or(Infeasible::OffSupport)?;
         let at_place = standing * held.tool_from_object.inverse();
         let tries = m.settings().base_tries.div_ceil(3);
-        let wanted = Wanted { world_from_tool: &at_place, gap_m, tries };
-        if let Some(way) = stance(m, from, &wanted, rng, |q| way_of(m, q, &at_place, &down)) {
-            return assemble(m, from, &held, surface, &way, rng);
+        let wanted = Wanted { world_from_tool: &at_place, tries };
+        let mut before = Probe::new(m, from, from.mode.clone());
+        let mut after = Probe::new(m, from, released.clone());
+        if let Some(pose) = after.state_mut().objects.get_mut(held.object.index()) {
+            *pose = standing;
+        }
+        let letting_go = contacts(held.object, surface);
+        let way = stance(m, from, &wanted, rng, |q| {
+            after.check(q, &letting_go)?;
+            way_of(m, q, &at_place, &down, &mut before)
+        });
+        match way {
+            Ok(way) => return assemble(m, from, &held, surface, &way, rng),
+            Err(refused) => why = refused,
         }
     }
-    Err(Infeasible::Unreachable)
+    Err(why)
 }
 
 /// How many turns of a round object are tried: the fingers must find room beside the surface.
@@ -91,13 +103,21 @@ fn way_of<M: Manipulator>(
     q: &Configuration<M::Joints>,
     at_place: &Isometry3<f64>,
     direction: &Vector3<f64>,
-) -> Option<Way<M::Joints>> {
+    before: &mut Probe<'_, M>,
+) -> Result<Way<M::Joints>, Refused> {
     let out = line::follow(m, &q.base, &q.arm, at_place, &(-direction * m.settings().place.approach_m));
     if out.share < m.settings().least_line_share {
-        return None;
+        return Err(Refused::Unreachable);
     }
+    let high = *out.arms.last().ok_or(Refused::Unreachable)?;
+    before.check(&Configuration { base: q.base, arm: high }, &Contacts::default())?;
     let down = out.arms.iter().rev().copied().chain([q.arm]).collect();
-    Some(Way { base: q.base, down })
+    Ok(Way { base: q.base, down })
+}
+
+/// What may touch while the object is set down and let go.
+fn contacts(object: ObjectId, surface: SurfaceId) -> Contacts {
+    Contacts { fingers: Some((object, TouchReason::Grasp)), support: Some((object, surface)) }
 }
 
 fn assemble<M: Manipulator>(
@@ -122,7 +142,7 @@ fn assemble<M: Manipulator>(
     let instance = Instance {
         label: label::PLACE,
         motion: Box::new(motion),
-        contacts: Contacts { fingers: Some((held.object, TouchReason::Grasp)), support: Some((held.object, surface)) },
+        contacts: contacts(held.object, surface),
         moves: ComponentSet::ROBOT.with(ComponentId::Object(held.object)),
         object: Some(held.object),
         reversible: false,

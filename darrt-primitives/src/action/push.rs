@@ -7,7 +7,7 @@ use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
 use super::retreat::retreat;
-use super::stance::{Wanted, stance};
+use super::stance::{Probe, Refused, Wanted, stance};
 use super::travel::travel;
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
@@ -33,12 +33,16 @@ struct Way<J> {
     share: f64,
 }
 
+/// How far before what is in its way the object stops, metres.
+const STOP_BEFORE_M: f64 = 0.01;
+
 /// Retreat, transit to the pushing pose, straight down behind the object, and the push: to the object's target or, where
-/// that lies off the support, to the edge.
+/// that lies off the support, to the edge; not so far if something stands in the object's way.
 ///
 /// # Errors
 /// [`Infeasible::NoContact`] for an object that cannot be pushed, [`Infeasible::OffSupport`] if the way leaves its
-/// support, [`Infeasible::NoProgress`] if it is already as near as a push can bring it, [`Infeasible::Unreachable`].
+/// support, [`Infeasible::NoProgress`] if it is already as near as a push can bring it, [`Infeasible::Blocked`] if the
+/// object or every stance of the robot meets something, [`Infeasible::Unreachable`].
 pub fn push<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
@@ -52,7 +56,10 @@ pub fn push<M: Manipulator>(
     let surface = from.mode.support_of(object).and_then(|s| m.surface(s)).ok_or(Infeasible::OffSupport)?;
     let pose = from.object(object).ok_or(Infeasible::NoContact)?;
 
-    let end = end_of_push(m, surface, pose, target, rng)?;
+    let mut chain = Chain::at(from);
+    retreat(m, &mut chain)?;
+    let mut end = end_of_push(m, surface, pose, target, rng)?;
+    shorten_to_free(m, from, object, &mut end)?;
     let hand = m.manipulator().hand();
     let contact =
         RimContact::new(radius, settings.gap_m, hand.tip_half_width_m()).map_err(|_| Infeasible::NoContact)?;
@@ -62,9 +69,51 @@ pub fn push<M: Manipulator>(
     let at_contact =
         contact.world_from_tool(&center, &end.direction, height, &twin).map_err(|_| Infeasible::NoContact)?;
 
-    let wanted = Wanted { world_from_tool: &at_contact, gap_m: settings.gap_m, tries: m.settings().base_tries };
-    let way = stance(m, from, &wanted, rng, |q| way_of(m, q, &at_contact, &end)).ok_or(Infeasible::Unreachable)?;
-    assemble(m, from, object, pose, &end, &way, rng)
+    let wanted = Wanted { world_from_tool: &at_contact, tries: m.settings().base_tries };
+    let beside = from.mode.opened_to(settings.gap_m).and_then(|mode| mode.engaged_with(object));
+    let mut probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
+    let push = Pushing { object, pose, at_contact: &at_contact, end: &end };
+    let way = stance(m, from, &wanted, rng, |q| way_of(m, q, &push, &mut probe))?;
+    assemble(m, chain, &push, &way, rng)
+}
+
+/// What is pushed, from where, and how.
+struct Pushing<'a> {
+    object: ObjectId,
+    pose: &'a Isometry3<f64>,
+    at_contact: &'a Isometry3<f64>,
+    end: &'a PushEnd,
+}
+
+impl Pushing<'_> {
+    /// Where the object is when `share` of the push is done.
+    fn pose_at(&self, share: f64) -> Isometry3<f64> {
+        let mut pose = *self.pose;
+        pose.translation.x += self.end.direction.x * self.end.length * share;
+        pose.translation.y += self.end.direction.y * self.end.length * share;
+        pose
+    }
+}
+
+/// Ends the push before what stands in the object's way. This costs next to nothing and needs no arm.
+fn shorten_to_free<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    object: ObjectId,
+    end: &mut PushEnd,
+) -> Result<(), Infeasible> {
+    let way = Vector3::new(end.direction.x, end.direction.y, 0.0) * end.length;
+    let (free_m, blame) = m.surroundings().free_slide(m.manipulator(), from, object, &way);
+    if let Some(blame) = blame {
+        let length = free_m - STOP_BEFORE_M;
+        if length < LEAST_PUSH_M {
+            return Err(Infeasible::Blocked(blame));
+        }
+        end.center -= end.direction.into_inner() * (end.length - length);
+        end.length = length;
+        end.limited_by_edge = false;
+    }
+    Ok(())
 }
 
 fn end_of_push<M: Manipulator>(
@@ -85,47 +134,62 @@ fn end_of_push<M: Manipulator>(
     })
 }
 
-/// The arm's way from a configuration at the contact, if it reaches far enough.
+/// The arm's way from a configuration at the contact, if it reaches far enough and its cornerstones are clear.
 fn way_of<M: Manipulator>(
     m: &Tabletop<M>,
     q: &Configuration<M::Joints>,
-    at_contact: &Isometry3<f64>,
-    end: &PushEnd,
-) -> Option<Way<M::Joints>> {
+    push: &Pushing<'_>,
+    probe: &mut Probe<'_, M>,
+) -> Result<Way<M::Joints>, Refused> {
     let settings = &m.settings().push;
+    let Pushing { at_contact, end, .. } = push;
+    let touching = contacts(push.object);
+    probe.check(q, &touching)?;
     let ahead = Vector3::new(end.direction.x, end.direction.y, 0.0);
     // The first step decides most often, so it is tried before anything else.
     let along = line::follow(m, &q.base, &q.arm, at_contact, &(ahead * end.length));
     if along.share * end.length < LEAST_PUSH_M.min(end.length) {
-        return None;
+        return Err(Refused::Unreachable);
     }
-    let last = Configuration { base: q.base, arm: *along.arms.last()? };
-    if !m.stances().is_clear(m.manipulator(), &last, settings.gap_m) {
-        return None;
-    }
+    let robot = |arm: Option<&M::Joints>| {
+        arm.map(|arm| Configuration { base: q.base, arm: *arm }).ok_or(Refused::Unreachable)
+    };
+    place_object(probe, push.object, push.pose_at(along.share));
+    let at_end = probe.check(&robot(along.arms.last())?, &touching);
+    place_object(probe, push.object, *push.pose);
+    at_end?;
     let back = line::follow(m, &q.base, &q.arm, at_contact, &(-ahead * settings.standoff_m));
-    let standoff = *back.arms.last().filter(|_| back.share >= 1.0)?;
-    let mut behind = *at_contact;
+    let standoff = *back.arms.last().filter(|_| back.share >= 1.0).ok_or(Refused::Unreachable)?;
+    let mut behind = **at_contact;
     behind.translation.vector -= ahead * settings.standoff_m;
     let up = line::follow(m, &q.base, &standoff, &behind, &(Vector3::z() * settings.approach_m));
     if up.share < m.settings().least_line_share {
-        return None;
+        return Err(Refused::Unreachable);
     }
+    probe.check(&robot(up.arms.last())?, &Contacts::default())?;
     let down = up.arms.iter().rev().copied().chain([standoff]).collect();
-    Some(Way { base: q.base, down, contact: q.arm, along: along.arms, share: along.share })
+    Ok(Way { base: q.base, down, contact: q.arm, along: along.arms, share: along.share })
+}
+
+fn place_object<M: Manipulator>(probe: &mut Probe<'_, M>, object: ObjectId, at: Isometry3<f64>) {
+    if let Some(pose) = probe.state_mut().objects.get_mut(object.index()) {
+        *pose = at;
+    }
+}
+
+/// What a push may touch.
+fn contacts(object: ObjectId) -> Contacts {
+    Contacts { fingers: Some((object, TouchReason::Push)), support: None }
 }
 
 fn assemble<M: Manipulator>(
     m: &Tabletop<M>,
-    from: &TabletopState<M>,
-    object: ObjectId,
-    pose: &Isometry3<f64>,
-    end: &PushEnd,
+    mut chain: Chain<M>,
+    push: &Pushing<'_>,
     way: &Way<M::Joints>,
     rng: &mut dyn Rng,
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
-    let mut chain = Chain::at(from);
-    retreat(m, &mut chain)?;
+    let object = push.object;
     approach(m, &mut chain, object, way.base, &way.down, m.settings().push.gap_m, Contacts::default(), rng)?;
 
     let robot = |arm: &M::Joints| Configuration { base: way.base, arm: *arm };
@@ -135,15 +199,13 @@ fn assemble<M: Manipulator>(
     let waypoints: Vec<_> = std::iter::once(contact)
         .chain(along.map(|(arm, i)| Waypoint { robot: robot(arm), pushed: f64::from(i) / steps }))
         .collect();
-    let mut to = *pose;
-    to.translation.x += end.direction.x * end.length * way.share;
-    to.translation.y += end.direction.y * end.length * way.share;
     let mode = chain.end.mode.clone();
-    let motion = ArmMotion::new(m, &chain.end, &waypoints, Carried::Pushed(object, to), mode.clone(), mode);
+    let carried = Carried::Pushed(object, push.pose_at(way.share));
+    let motion = ArmMotion::new(m, &chain.end, &waypoints, carried, mode.clone(), mode);
     let instance = Instance {
         label: label::PUSH,
         motion: Box::new(motion),
-        contacts: Contacts { fingers: Some((object, TouchReason::Push)), support: None },
+        contacts: contacts(object),
         moves: ComponentSet::ROBOT.with(ComponentId::Object(object)),
         object: Some(object),
         reversible: false,

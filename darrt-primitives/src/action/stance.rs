@@ -1,11 +1,14 @@
 //! Where the robot stands to bring its hand to a pose: base and arm.
 
 use darrt_core::domain::Domain;
+use darrt_core::primitive::Infeasible;
 use darrt_core::space::ComponentSpace;
+use darrt_core::validity::Blame;
 use nalgebra::Isometry3;
 use rand::{Rng, RngExt};
 
 use crate::manipulator::{Configuration, Manipulator};
+use crate::mode::{Contacts, Mode};
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// How many arm configurations are drawn for one base.
@@ -16,46 +19,98 @@ const ARM_TRIES: usize = 4;
 pub struct Wanted<'a> {
     /// Where the hand shall be.
     pub world_from_tool: &'a Isometry3<f64>,
-    /// How far it shall be open, metres.
-    pub gap_m: f64,
     /// How many bases are tried.
     pub tries: usize,
 }
 
+/// Why a stance will not do.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Refused {
+    /// The arm does not reach far enough from there.
+    Unreachable,
+    /// Something is in the way.
+    Blocked(Blame),
+}
+
+impl From<Blame> for Refused {
+    fn from(blame: Blame) -> Self {
+        Self::Blocked(blame)
+    }
+}
+
 /// Tries bases for the wanted hand pose: sometimes the present one first, then random ones, each with a few arm
-/// configurations. Stances in which the robot passes through itself or a support surface are
-/// passed over. `accept` gets every other one and either makes something of it or lets the next be tried.
+/// configurations. `accept` makes something of a stance, or refuses it and the next is tried.
+///
+/// # Errors
+/// [`Infeasible::Blocked`] with what was in the way of the last stance that the arm reached, [`Infeasible::Unreachable`]
+/// if it reached none.
 pub fn stance<M: Manipulator, T>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
     wanted: &Wanted<'_>,
     rng: &mut dyn Rng,
-    mut accept: impl FnMut(&Configuration<M::Joints>) -> Option<T>,
-) -> Option<T> {
+    mut accept: impl FnMut(&Configuration<M::Joints>) -> Result<T, Refused>,
+) -> Result<T, Infeasible> {
     let robot = m.manipulator();
-    let Wanted { world_from_tool, gap_m, tries } = *wanted;
+    let Wanted { world_from_tool, tries } = *wanted;
     let [empty, loaded] = m.settings().drives;
     let drives = if from.mode.held().is_some() { loaded } else { empty };
     let stays = !drives || rng.random_bool(0.5);
+    let mut why = Infeasible::Unreachable;
     for attempt in 0..tries {
         let base =
             if !drives || (stays && attempt == 0) { from.robot.base } else { robot.base_for(world_from_tool, rng) };
         let parked = Configuration { base, arm: from.robot.arm };
         if !m.robot().base().contains(&base)
             || !robot.may_reach(&base, world_from_tool)
-            || !m.stances().is_base_clear(robot, &parked)
+            || !m.surroundings().is_base_clear(robot, &parked)
         {
             continue;
         }
         for _ in 0..ARM_TRIES {
             let Some(arm) = robot.inverse(&base, world_from_tool, rng) else { break };
-            let q = Configuration { base, arm };
-            if m.stances().is_clear(robot, &q, gap_m)
-                && let Some(found) = accept(&q)
-            {
-                return Some(found);
+            match accept(&Configuration { base, arm }) {
+                Ok(found) => return Ok(found),
+                Err(Refused::Blocked(blame)) => why = Infeasible::Blocked(blame),
+                Err(Refused::Unreachable) => {}
             }
         }
     }
-    None
+    Err(why)
+}
+
+/// A state to ask about: how it would be if the robot stood elsewhere.
+#[derive(Debug)]
+pub struct Probe<'a, M: Manipulator> {
+    m: &'a Tabletop<M>,
+    state: TabletopState<M>,
+}
+
+impl<'a, M: Manipulator> Probe<'a, M> {
+    /// As `like`, in this mode.
+    pub fn new(m: &'a Tabletop<M>, like: &TabletopState<M>, mode: Mode) -> Self {
+        let mut state = like.clone();
+        state.mode = mode;
+        Self { m, state }
+    }
+
+    /// The state asked about last, with its objects where the next question wants them.
+    pub fn state_mut(&mut self) -> &mut TabletopState<M> {
+        &mut self.state
+    }
+
+    /// Is nothing in the way with the robot at `q`, what it holds in its hand?
+    ///
+    /// # Errors
+    /// What is.
+    pub fn check(&mut self, q: &Configuration<M::Joints>, contacts: &Contacts) -> Result<(), Blame> {
+        let robot = self.m.manipulator();
+        self.state.robot = *q;
+        if let Some(held) = self.state.mode.held().copied()
+            && let Some(pose) = self.state.objects.get_mut(held.object.index())
+        {
+            *pose = robot.world_from_tool(q) * held.tool_from_object;
+        }
+        self.m.surroundings().check(robot, &self.state, contacts)
+    }
 }

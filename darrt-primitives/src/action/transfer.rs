@@ -7,16 +7,17 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 
 use super::Chain;
-use super::stance::{Wanted, stance};
+use super::stance::{Probe, Wanted, stance};
 use super::travel::{base_to, travel};
 use crate::manipulator::Manipulator;
+use crate::mode::Contacts;
 use crate::object_space::OBJECT_TOLERANCE_M;
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// Moves base and arm so that the held object comes to `target` (its yaw about its own axis free if it is round).
 ///
 /// # Errors
-/// [`Infeasible::NoGrasp`] if nothing is held, [`Infeasible::Unreachable`].
+/// [`Infeasible::NoGrasp`] if nothing is held, [`Infeasible::Blocked`], [`Infeasible::Unreachable`].
 pub fn transfer<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
@@ -26,8 +27,9 @@ pub fn transfer<M: Manipulator>(
     let held = *from.mode.held().ok_or(Infeasible::NoGrasp)?;
     let target = freely_turned(m, held.object.index(), target, rng);
     let at_target = target * held.tool_from_object.inverse();
-    let wanted = Wanted { world_from_tool: &at_target, gap_m: from.mode.gap_m(), tries: m.settings().base_tries };
-    let robot = stance(m, from, &wanted, rng, |q| Some(*q)).ok_or(Infeasible::Unreachable)?;
+    let wanted = Wanted { world_from_tool: &at_target, tries: m.settings().base_tries };
+    let mut probe = Probe::new(m, from, from.mode.clone());
+    let robot = stance(m, from, &wanted, rng, |q| Ok(probe.check(q, &Contacts::default()).map(|()| *q)?))?;
     let mut chain = Chain::at(from);
     travel(m, &mut chain, &robot, from.mode.gap_m(), rng);
     chain.finish()

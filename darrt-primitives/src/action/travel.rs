@@ -4,6 +4,7 @@ use darrt_core::motion::Instance;
 use darrt_core::state::{ComponentId, ComponentSet};
 use rand::{Rng, RngExt};
 
+use super::stance::Probe;
 use super::{Chain, label};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::manipulator::{Configuration, Manipulator};
@@ -41,17 +42,17 @@ pub fn travel<M: Manipulator>(
     }
 }
 
-/// One of the postures, at random, in which the robot keeps clear of itself and of the support surfaces both where it
-/// stands and where it goes.
+/// One of the postures, at random, in which nothing is in the way of the robot and of what it holds, neither where it
+/// stands nor where it goes.
 fn clear_posture<M: Manipulator>(
     m: &Tabletop<M>,
     chain: &Chain<M>,
     target: &Configuration<M::Joints>,
     rng: &mut dyn Rng,
 ) -> Option<M::Joints> {
-    let is_clear = |base: [f64; 3], arm: M::Joints| {
-        m.stances().is_clear(m.manipulator(), &Configuration { base, arm }, chain.end.mode.gap_m())
-    };
+    let mut probe = Probe::new(m, &chain.end, chain.end.mode.clone());
+    let mut is_clear =
+        |base: [f64; 3], arm: M::Joints| probe.check(&Configuration { base, arm }, &Contacts::default()).is_ok();
     let postures = &m.settings().postures;
     let first = if postures.is_empty() { 0 } else { rng.random_range(0..postures.len()) };
     let turned = postures.iter().cycle().skip(first).take(postures.len());

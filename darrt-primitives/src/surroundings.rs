@@ -1,0 +1,380 @@
+//! Robot, movable objects and fixed bodies in one collision model: who may touch whom, and what is too near.
+//!
+//! The model is part of the domain, so that primitives can ask it before they propose something: the obstacles are known,
+//! and a stance in which the robot stands in a kettle is not worth a chain of motions. Whether a whole motion is free is
+//! the question of [`validity`](crate::validity).
+
+use std::sync::{Arc, Mutex};
+
+use darrt_core::state::ObjectId;
+use darrt_core::validity::{Blame, BlockKind};
+use darrt_geom::allowed::{AllowedContacts, ContactReason};
+use darrt_geom::body_set::{BodyIndex, BodySet};
+use darrt_geom::collide::{CollisionModel, Hit, Query, Scratch};
+use darrt_geom::error::GeomError;
+use darrt_geom::scene::FixedBody;
+use darrt_geom::shape::Shape;
+use nalgebra::{Isometry3, Vector3};
+
+use crate::manipulator::{Configuration, LinkGroup, Manipulator};
+use crate::mode::{Contacts, TouchReason};
+use crate::tabletop::{Movable, Support, TabletopState};
+
+/// How strict the check is; metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strictness {
+    /// Bodies nearer than this collide. Also the shortest distance that a motion advances at once, so it must be
+    /// positive: it is what the check gives away to be certain between states.
+    pub clearance_m: f64,
+    /// Distances beyond this are not told apart: the farthest that a motion advances at once.
+    pub cap_m: f64,
+}
+
+impl Default for Strictness {
+    fn default() -> Self {
+        Self { clearance_m: 0.002, cap_m: 0.2 }
+    }
+}
+
+/// Bodies of the robot, the objects and the scene, and the rules of touching.
+pub struct Surroundings {
+    model: CollisionModel,
+    strictness: Strictness,
+    links: Vec<BodyIndex>,
+    objects: Vec<BodyIndex>,
+    fingers: Vec<BodyIndex>,
+    /// By surface: the fixed bodies under it.
+    supports: Vec<Vec<BodyIndex>>,
+    base_links: BodySet,
+    arm_links: BodySet,
+    finger_links: BodySet,
+    all_links: BodySet,
+    workers: Mutex<Vec<Worker>>,
+}
+
+/// Memory of one check at a time; reused, so that a check allocates nothing.
+pub(crate) struct Worker {
+    scratch: Scratch,
+    /// Where the links and then the objects stand.
+    pub(crate) poses: Vec<Isometry3<f64>>,
+    pub(crate) allowed: AllowedContacts,
+    /// By body: metres that it travels per unit of the motion's parameter.
+    pub(crate) reach: Vec<f64>,
+    /// By link: metres that it travels on one leg of a motion.
+    pub(crate) link_travel: Vec<f64>,
+}
+
+impl Surroundings {
+    /// The model of `robot` with the `movables` among the `fixed` bodies.
+    ///
+    /// # Errors
+    /// [`GeomError`] if there are too many bodies or a shape cannot be used.
+    pub fn new<M: Manipulator>(
+        robot: &M,
+        movables: &[Movable],
+        supports: &[Support],
+        fixed: &[FixedBody],
+        strictness: Strictness,
+    ) -> Result<Self, GeomError> {
+        let mut model = CollisionModel::builder();
+        let links: Vec<_> =
+            robot.links().iter().map(|link| model.add_moving(&link.body)).collect::<Result<_, GeomError>>()?;
+        for (i, a) in links.iter().enumerate() {
+            for (j, b) in links.iter().enumerate().skip(i + 1) {
+                if !robot.self_pairs().contains(&(i, j)) && !robot.self_pairs().contains(&(j, i)) {
+                    model.disable(*a, *b)?;
+                }
+            }
+        }
+        let objects = movables.iter().map(|o| model.add_moving(&o.body)).collect::<Result<Vec<_>, GeomError>>()?;
+        let mut fixed_ids = Vec::new();
+        for body in fixed {
+            let id = model.add_fixed(&body.body, &body.world_from_body)?;
+            // The base rolls on the floor: its links keep their height.
+            if body.body.parts.iter().all(|part| matches!(part.shape, Shape::HalfSpace { .. })) {
+                for (link, _) in links.iter().zip(robot.links()).filter(|(_, link)| link.group == LinkGroup::Base) {
+                    model.disable(*link, id)?;
+                }
+            }
+            fixed_ids.push((Arc::clone(&body.body.name), id));
+        }
+        let supports = supports.iter().map(|support| {
+            let under = fixed_ids.iter().filter(|(name, _)| support.bodies.contains(name));
+            under.map(|(_, id)| *id).collect()
+        });
+        let in_group = |wanted: &[LinkGroup]| -> BodySet {
+            let links = links.iter().zip(robot.links());
+            links.filter(|(_, link)| wanted.contains(&link.group)).map(|(id, _)| *id).collect()
+        };
+        let fingers = in_group(&[LinkGroup::Finger]);
+        Ok(Self {
+            supports: supports.collect(),
+            base_links: in_group(&[LinkGroup::Base]),
+            arm_links: in_group(&[LinkGroup::Arm, LinkGroup::Finger]),
+            all_links: in_group(&[LinkGroup::Base, LinkGroup::Arm, LinkGroup::Finger]),
+            fingers: fingers.iter().collect(),
+            finger_links: fingers,
+            model: model.build(),
+            strictness,
+            links,
+            objects,
+            workers: Mutex::new(Vec::new()),
+        })
+    }
+
+    /// The collision model, for reports.
+    pub fn model(&self) -> &CollisionModel {
+        &self.model
+    }
+
+    /// How strict the check is.
+    pub fn strictness(&self) -> &Strictness {
+        &self.strictness
+    }
+
+    /// Do base, trunk and whatever else is rigid to the base keep clear of the fixed bodies? Asks nothing of the arm.
+    pub fn is_base_clear<M: Manipulator>(&self, robot: &M, q: &Configuration<M::Joints>) -> bool {
+        self.with_worker(|worker| {
+            worker.allowed = AllowedContacts::none();
+            let (link_poses, _) = worker.poses.split_at_mut(self.links.len());
+            robot.link_poses(q, robot.hand().max_gap_m(), link_poses);
+            for (id, pose) in self.links.iter().zip(link_poses.iter()) {
+                self.model.set_pose(&mut worker.scratch, *id, pose);
+            }
+            // What the arm does and where the objects are must not count, but every body needs a pose.
+            for id in &self.objects {
+                self.model.set_pose(&mut worker.scratch, *id, &Isometry3::identity());
+            }
+            let against = BodySet::ALL.difference(self.model.moving());
+            self.lower_bound(worker, &self.base_links, &against, 0.0).is_ok()
+        })
+    }
+
+    /// Is nothing too near to anything else in `state`, `contacts` excepted?
+    ///
+    /// # Errors
+    /// The first pair found.
+    pub fn check<M: Manipulator>(
+        &self,
+        robot: &M,
+        state: &TabletopState<M>,
+        contacts: &Contacts,
+    ) -> Result<(), Blame> {
+        let hit = self.with_worker(|worker| {
+            self.allow(state, contacts, &mut worker.allowed);
+            self.pose_all(robot, state, worker);
+            self.lower_bound(worker, &BodySet::ALL, &BodySet::ALL, 0.0)
+        });
+        hit.map(|_| ()).map_err(|hit| self.blame(&hit))
+    }
+
+    /// How far a resting object could slide in a straight line if the robot were not there: metres along `way`, at most
+    /// its length, and what ends it.
+    pub fn free_slide<M: Manipulator>(
+        &self,
+        robot: &M,
+        from: &TabletopState<M>,
+        object: ObjectId,
+        way: &Vector3<f64>,
+    ) -> (f64, Option<Blame>) {
+        let length_m = way.norm();
+        let (Some(id), Some(start)) = (self.objects.get(object.index()).copied(), from.object(object)) else {
+            return (0.0, None);
+        };
+        let hit = self.with_worker(|worker| {
+            self.allow(from, &Contacts::default(), &mut worker.allowed);
+            self.pose_all(robot, from, worker);
+            let mut moved = BodySet::EMPTY;
+            moved.insert(id);
+            let others = BodySet::ALL.difference(&self.all_links);
+            let mut s = 0.0;
+            loop {
+                let mut pose = *start;
+                pose.translation.vector += way * if length_m > 0.0 { s / length_m } else { 0.0 };
+                self.model.set_pose(&mut worker.scratch, id, &pose);
+                match self.lower_bound(worker, &moved, &others, self.strictness.cap_m) {
+                    Err(hit) => return Err((s, hit)),
+                    Ok(_) if s >= length_m => return Ok(()),
+                    Ok(free) => s = (s + free.max(self.strictness.clearance_m)).min(length_m),
+                }
+            }
+        });
+        match hit {
+            Ok(()) => (length_m, None),
+            Err((s, hit)) => ((s - self.strictness.clearance_m).max(0.0), Some(self.blame(&hit))),
+        }
+    }
+
+    /// Lends a worker to `work`.
+    pub(crate) fn with_worker<T>(&self, work: impl FnOnce(&mut Worker) -> T) -> T {
+        let spare = self.workers.lock().ok().and_then(|mut w| w.pop());
+        let mut worker = spare.unwrap_or_else(|| Worker {
+            scratch: self.model.scratch(),
+            poses: vec![Isometry3::identity(); self.links.len() + self.objects.len()],
+            allowed: AllowedContacts::none(),
+            reach: vec![0.0; self.links.len() + self.objects.len()],
+            link_travel: vec![0.0; self.links.len()],
+        });
+        let result = work(&mut worker);
+        if let Ok(mut workers) = self.workers.lock() {
+            workers.push(worker);
+        }
+        result
+    }
+
+    /// Puts every body where it is in `state`.
+    pub(crate) fn pose_all<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, worker: &mut Worker) {
+        let (link_poses, object_poses) = worker.poses.split_at_mut(self.links.len());
+        robot.link_poses(&state.robot, state.mode.gap_m(), link_poses);
+        object_poses.iter_mut().zip(&state.objects).for_each(|(slot, pose)| *slot = *pose);
+        self.model.set_poses(&mut worker.scratch, &worker.poses);
+    }
+
+    /// The bodies that stand elsewhere in `state` than in `before`, or may do so.
+    pub(crate) fn moved<M: Manipulator>(&self, before: &TabletopState<M>, state: &TabletopState<M>) -> BodySet {
+        let mut moved = if before.robot.base != state.robot.base {
+            self.all_links
+        } else if before.robot.arm != state.robot.arm {
+            self.arm_links
+        } else if before.mode.gap_m() != state.mode.gap_m() {
+            self.finger_links
+        } else {
+            BodySet::EMPTY
+        };
+        for ((id, a), b) in self.objects.iter().zip(&before.objects).zip(&state.objects) {
+            if a != b {
+                moved.insert(*id);
+            }
+        }
+        moved
+    }
+
+    /// Puts the bodies in `moved` where they are in `state`.
+    pub(crate) fn pose<M: Manipulator>(
+        &self,
+        robot: &M,
+        state: &TabletopState<M>,
+        moved: &BodySet,
+        worker: &mut Worker,
+    ) {
+        let (link_poses, object_poses) = worker.poses.split_at_mut(self.links.len());
+        if !moved.intersection(&self.all_links).is_empty() {
+            robot.link_poses(&state.robot, state.mode.gap_m(), link_poses);
+            for (id, pose) in self.links.iter().zip(link_poses.iter()) {
+                if moved.contains(*id) {
+                    self.model.set_pose(&mut worker.scratch, *id, pose);
+                }
+            }
+        }
+        for ((id, slot), pose) in self.objects.iter().zip(object_poses).zip(&state.objects) {
+            if moved.contains(*id) {
+                *slot = *pose;
+                self.model.set_pose(&mut worker.scratch, *id, pose);
+            }
+        }
+    }
+
+    /// What may touch in this mode during an instance with these contacts.
+    pub(crate) fn allow<M: Manipulator>(
+        &self,
+        state: &TabletopState<M>,
+        contacts: &Contacts,
+        out: &mut AllowedContacts,
+    ) {
+        *out = AllowedContacts::none();
+        for (i, object) in self.objects.iter().enumerate() {
+            if let Some(under) = state.mode.support_of(ObjectId::new(i)).and_then(|s| self.supports.get(s.index())) {
+                for body in under {
+                    out.allow(*object, *body, ContactReason::RestsOn);
+                }
+            }
+        }
+        if let Some(held) = state.mode.held() {
+            self.allow_fingers(held.object, ContactReason::Held, out);
+        }
+        if let Some((object, reason)) = contacts.fingers {
+            let reason = match reason {
+                TouchReason::Push => ContactReason::PushContact,
+                _ => ContactReason::GraspContact,
+            };
+            self.allow_fingers(object, reason, out);
+        }
+        if let Some((object, surface)) = contacts.support
+            && let (Some(object), Some(under)) = (self.objects.get(object.index()), self.supports.get(surface.index()))
+        {
+            for body in under {
+                out.allow(*object, *body, ContactReason::RestsOn);
+            }
+        }
+    }
+
+    fn allow_fingers(&self, object: ObjectId, reason: ContactReason, out: &mut AllowedContacts) {
+        if let Some(object) = self.objects.get(object.index()) {
+            self.fingers.iter().for_each(|finger| out.allow(*finger, *object, reason));
+        }
+    }
+
+    /// Smallest distance in metres over the pairs of one body in `moved` and one in `against`, up to `cap_m`.
+    pub(crate) fn lower_bound(
+        &self,
+        worker: &mut Worker,
+        moved: &BodySet,
+        against: &BodySet,
+        cap_m: f64,
+    ) -> Result<f64, Hit> {
+        let Worker { scratch, allowed, .. } = worker;
+        self.model
+            .lower_bound(scratch, &Query { moved, against, allowed, clearance: self.strictness.clearance_m, cap: cap_m })
+    }
+
+    /// How far the motion's parameter may grow, at most `cap`, before anything in `moved` and `against` can come nearer
+    /// than the clearance, when every body travels as `worker.reach` says. The bodies in `chain` hang together.
+    pub(crate) fn free_step(
+        &self,
+        worker: &mut Worker,
+        (moved, against, chain): (&BodySet, &BodySet, &BodySet),
+        cap: f64,
+    ) -> Result<f64, Hit> {
+        let Worker { scratch, allowed, reach, .. } = worker;
+        let query = Query { moved, against, allowed, clearance: self.strictness.clearance_m, cap };
+        self.model.free_step(scratch, &query, reach, chain)
+    }
+
+    /// The bodies of the objects, by id.
+    pub(crate) fn objects(&self) -> &[BodyIndex] {
+        &self.objects
+    }
+
+    /// The bodies of the links, as a set.
+    pub(crate) fn all_links(&self) -> &BodySet {
+        &self.all_links
+    }
+
+    /// The bodies of the links, in the robot's order.
+    pub(crate) fn links(&self) -> &[BodyIndex] {
+        &self.links
+    }
+
+    /// A hit in words.
+    pub(crate) fn blame(&self, hit: &Hit) -> Blame {
+        let is_object = |id: &BodyIndex| self.objects.contains(id);
+        let is_link = |id: &BodyIndex| self.all_links.contains(*id);
+        let (a, b) = (&hit.first, &hit.second);
+        let kind = match (is_link(a) || is_link(b), is_object(a) || is_object(b)) {
+            (true, true) => BlockKind::RobotObject,
+            (true, false) if is_link(a) && is_link(b) => BlockKind::RobotItself,
+            (true, false) => BlockKind::RobotFixed,
+            (false, true) if is_object(a) && is_object(b) => BlockKind::ObjectObject,
+            (false, _) => BlockKind::ObjectFixed,
+        };
+        let place = [hit.place.x, hit.place.y, hit.place.z];
+        let name = |id: &BodyIndex| self.model.name(*id).map_or_else(|| "unknown body".into(), Arc::clone);
+        Blame { kind, first: name(a), second: name(b), place }
+    }
+}
+
+impl std::fmt::Debug for Surroundings {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Surroundings").field("strictness", &self.strictness).finish_non_exhaustive()
+    }
+}
