@@ -135,6 +135,7 @@ impl Pr2 {
 fn group_of(frame: Frame) -> LinkGroup {
     match frame {
         Frame::LeftFinger | Frame::RightFinger | Frame::LeftFingerTip | Frame::RightFingerTip => LinkGroup::Finger,
+        Frame::WristRoll | Frame::Tool => LinkGroup::Hand,
         _ => LinkGroup::Arm,
     }
 }

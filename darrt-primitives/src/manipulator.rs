@@ -43,6 +43,8 @@ pub enum LinkGroup {
     Base,
     /// Moved by the joints of the planned arm.
     Arm,
+    /// Rigid to the tool frame: the palm.
+    Hand,
     /// A finger of the planned arm: also moved by the gripper, and allowed to touch what it manipulates.
     Finger,
 }
@@ -76,7 +78,7 @@ pub trait Hand: Send + Sync {
 ///   its joints lie within [`Manipulator::limits`].
 /// - No point of the robot moves farther than [`Manipulator::travel_m`] while base and arm move on the straight line
 ///   between two configurations, and no point of a link farther than [`Manipulator::link_travel_m`] says of it.
-/// - `link_poses` follows `world_from_tool`: finger links are rigid to the tool for a constant gap.
+/// - `link_poses` follows `world_from_tool`: hand links are rigid to the tool, finger links for a constant gap.
 pub trait Manipulator: Send + Sync + 'static {
     /// The arm's joint vector.
     type Joints: JointVector;

@@ -47,6 +47,7 @@ pub struct Surroundings {
     supports: Vec<Vec<BodyIndex>>,
     base_links: BodySet,
     arm_links: BodySet,
+    hand_links: BodySet,
     finger_links: BodySet,
     all_links: BodySet,
     workers: Mutex<Vec<Worker>>,
@@ -110,8 +111,9 @@ impl Surroundings {
         Ok(Self {
             supports: supports.collect(),
             base_links: in_group(&[LinkGroup::Base]),
-            arm_links: in_group(&[LinkGroup::Arm, LinkGroup::Finger]),
-            all_links: in_group(&[LinkGroup::Base, LinkGroup::Arm, LinkGroup::Finger]),
+            arm_links: in_group(&[LinkGroup::Arm, LinkGroup::Hand, LinkGroup::Finger]),
+            hand_links: in_group(&[LinkGroup::Hand, LinkGroup::Finger]),
+            all_links: links.iter().copied().collect(),
             fingers: fingers.iter().collect(),
             finger_links: fingers,
             model: model.build(),
@@ -164,6 +166,40 @@ impl Surroundings {
             self.allow(state, contacts, &mut worker.allowed);
             self.pose_all(robot, state, worker);
             self.lower_bound(worker, &BodySet::ALL, &BodySet::ALL, 0.0)
+        });
+        hit.map(|_| ()).map_err(|hit| self.blame(&hit))
+    }
+
+    /// Could the hand be at `world_from_tool` with the objects and the opening of `like`, if there were no arm behind it?
+    /// The hand and the object that `contacts` or the mode names are asked about. Much cheaper than to look for an arm
+    /// and a base first.
+    ///
+    /// # Errors
+    /// The first pair found.
+    pub fn check_hand<M: Manipulator>(
+        &self,
+        robot: &M,
+        like: &TabletopState<M>,
+        world_from_tool: &Isometry3<f64>,
+        contacts: &Contacts,
+    ) -> Result<(), Blame> {
+        let hit = self.with_worker(|worker| {
+            self.allow(like, contacts, &mut worker.allowed);
+            self.pose_all(robot, like, worker);
+            // The hand is rigid to the tool, so it is where the arm of `like` has it, carried over.
+            let there_from_here = world_from_tool * robot.world_from_tool(&like.robot).inverse();
+            for (id, pose) in self.links.iter().zip(&worker.poses) {
+                if self.hand_links.contains(*id) {
+                    self.model.set_pose(&mut worker.scratch, *id, &(there_from_here * pose));
+                }
+            }
+            let mut moved = self.hand_links;
+            let with = contacts.support.map(|(object, _)| object).or(like.mode.held().map(|held| held.object));
+            if let Some(object) = with.and_then(|object| self.objects.get(object.index())) {
+                moved.insert(*object);
+            }
+            let others = BodySet::ALL.difference(&self.all_links.difference(&self.hand_links));
+            self.lower_bound(worker, &moved, &others, 0.0)
         });
         hit.map(|_| ()).map_err(|hit| self.blame(&hit))
     }

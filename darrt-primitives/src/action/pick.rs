@@ -49,16 +49,22 @@ pub fn pick<M: Manipulator>(
     let mut why = Infeasible::NoGrasp;
     for _ in 0..m.settings().grasp_tries * GRASPS_PER_TRY {
         let Some(family) = movable.grasps.get(rng.random_range(0..movable.grasps.len())) else { continue };
-        let grasp = family.sample(rng);
+        let mut grasp = family.sample(rng);
+        grasp.open_gap_m = grasp.open_gap_m.min(m.manipulator().hand().max_gap_m());
         if !fits(m, from, object, movable, pose, &grasp) {
             continue;
         }
-        fitted += 1;
         let at_grasp = grasp.world_from_tool(pose);
         let tries = m.settings().base_tries.div_ceil(2);
         let wanted = Wanted { world_from_tool: &at_grasp, tries };
         let mode = beside.opened_to(grasp.open_gap_m).ok_or(Infeasible::NoGrasp)?;
         let mut probe = Probe::new(m, from, mode);
+        let open = straddling(object, &grasp);
+        if let Err(blame) = m.surroundings().check_hand(m.manipulator(), probe.state_mut(), &at_grasp, &open) {
+            why = Infeasible::Blocked(blame);
+            continue;
+        }
+        fitted += 1;
         let picking = Picking { object, pose, grasp: &grasp, at_grasp: &at_grasp };
         match stance(m, from, &wanted, rng, |q| way_of(m, q, &picking, movable, &mut probe)) {
             Ok(way) => return assemble(m, chain, &picking, &way, rng),

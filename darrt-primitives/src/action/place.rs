@@ -49,17 +49,30 @@ pub fn place<M: Manipulator>(
     };
     let released = from.mode.released_on(surface, release_gap_m(m, from)).ok_or(Infeasible::NoGrasp)?;
     let mut why = Infeasible::Unreachable;
-    for _ in 0..YAW_TRIES {
+    let mut after = Probe::new(m, from, released);
+    let letting_go = contacts(held.object, surface);
+    let mut clear = 0;
+    for _ in 0..YAW_DRAWS {
         let standing = standing_pose(m, &held, surface, target, rng).ok_or(Infeasible::OffSupport)?;
         let at_place = standing * held.tool_from_object.inverse();
-        let tries = m.settings().base_tries.div_ceil(3);
-        let wanted = Wanted { world_from_tool: &at_place, tries };
-        let mut before = Probe::new(m, from, from.mode.clone());
-        let mut after = Probe::new(m, from, released.clone());
         if let Some(pose) = after.state_mut().objects.get_mut(held.object.index()) {
             *pose = standing;
         }
-        let letting_go = contacts(held.object, surface);
+        // With the fingers closed as much as opened: the lower one moves beside the surface when it lets go.
+        let mut before = Probe::new(m, from, from.mode.clone());
+        if let Some(pose) = before.state_mut().objects.get_mut(held.object.index()) {
+            *pose = standing;
+        }
+        let hand_at = |probe: &mut Probe<'_, M>| {
+            m.surroundings().check_hand(m.manipulator(), probe.state_mut(), &at_place, &letting_go)
+        };
+        if let Err(blame) = hand_at(&mut before).and_then(|()| hand_at(&mut after)) {
+            why = Infeasible::Blocked(blame);
+            continue;
+        }
+        clear += 1;
+        let tries = m.settings().base_tries.div_ceil(2);
+        let wanted = Wanted { world_from_tool: &at_place, tries };
         let way = stance(m, from, &wanted, rng, |q| {
             after.check(q, &letting_go)?;
             way_of(m, q, &at_place, &down, &mut before)
@@ -68,12 +81,16 @@ pub fn place<M: Manipulator>(
             Ok(way) => return assemble(m, from, &held, surface, &way, rng),
             Err(refused) => why = refused,
         }
+        if clear >= m.settings().grasp_tries {
+            break;
+        }
     }
     Err(why)
 }
 
-/// How many turns of a round object are tried: the fingers must find room beside the surface.
-const YAW_TRIES: usize = 10;
+/// How many turns of the object are drawn: the fingers must find room beside the surface, and at the corner of a table
+/// few degrees are left to them.
+const YAW_DRAWS: usize = 100;
 
 /// How far the fingers open to let go.
 fn release_gap_m<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>) -> f64 {

@@ -73,6 +73,8 @@ pub fn push<M: Manipulator>(
     let beside = from.mode.opened_to(settings.gap_m).and_then(|mode| mode.engaged_with(object));
     let mut probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
     let push = Pushing { object, pose, at_contact: &at_contact, end: &end };
+    let hand_is_free = m.surroundings().check_hand(m.manipulator(), probe.state_mut(), &at_contact, &contacts(object));
+    hand_is_free.map_err(Infeasible::Blocked)?;
     let way = stance(m, from, &wanted, rng, |q| way_of(m, q, &push, &mut probe))?;
     assemble(m, chain, &push, &way, rng)
 }

@@ -76,17 +76,32 @@ impl RimGrasps {
 
     /// The grasp at `azimuth` with `tilt`, radians.
     ///
-    /// The tool origin lies in the plate's middle plane, `insertion - tip_ahead` inside the rim; the
-    /// tool x axis points at the plate's axis and down by the tilt.
+    /// The tool x axis points at the plate's axis and down by the tilt. A level hand has its tool origin in the plate's
+    /// middle plane, `insertion - tip_ahead` inside the rim. Parallel pads close on a tilted plate only until the end of
+    /// one and the rim of the plate on the other touch: a tilted hand closes less far and stands between these contacts.
     pub fn grasp(&self, azimuth: f64, tilt: f64, flipped: bool) -> Grasp {
         let (outward, _) = radial_and_tangent(azimuth);
         let (sin, cos) = tilt.sin_cos();
-        let origin = (self.radius - self.options.insertion + self.grip.tip_ahead) * outward;
         let pointing = -cos * outward - sin * Vector3::z();
-        let sign = if flipped { -1.0 } else { 1.0 };
-        let opening = sign * (sin * outward - cos * Vector3::z());
+        let above = cos * Vector3::z() - sin * outward;
+        let [upper, lower] = self.pad_distances(tilt);
+        let rim = (self.radius - self.options.insertion + self.grip.tip_ahead) * outward;
+        let origin = rim + (upper - lower) / 2.0 * above;
+        let sign = if flipped { 1.0 } else { -1.0 };
         let kind = GraspKind::Rim { azimuth, tilt, flipped };
-        self.grip.grasp(origin, pointing, opening, self.height, kind)
+        let grasp = self.grip.grasp(origin, pointing, sign * above, upper + lower, kind);
+        Grasp { open_gap_m: upper + lower + (self.grip.open_gap - self.height), ..grasp }
+    }
+
+    /// Distances of the pads, above and below, from the line along the hand through the middle of the plate, when they
+    /// touch it; metres. The pads reach `tip_ahead` beyond the tool and farther back than the rim.
+    fn pad_distances(&self, tilt: f64) -> [f64; 2] {
+        let half = self.height / 2.0;
+        // Steeper than this the pads would no longer meet the faces but the rim.
+        let (sin, cos) = (tilt.abs().sin(), tilt.cos().max(0.2));
+        let at_tip = self.grip.tip_ahead * sin / cos + half / cos;
+        let at_rim = (self.options.insertion - self.grip.tip_ahead).max(0.0) * sin + half * cos;
+        if tilt >= 0.0 { [at_tip, at_rim] } else { [at_rim, at_tip] }
     }
 }
 
