@@ -15,6 +15,8 @@ mod primitives;
 #[cfg(test)]
 mod problem_errors;
 #[cfg(test)]
+mod printing;
+#[cfg(test)]
 mod refusals;
 #[cfg(test)]
 mod solved;
