@@ -1,5 +1,7 @@
 //! What can be wrong with a robot.
 
+use std::path::PathBuf;
+
 use darrt_primitives::kinematics::UrdfError;
 
 /// Why a robot, or a part of it, could not be built.
@@ -9,6 +11,14 @@ pub enum ModelError {
     /// The description is not sound.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
+    /// The description in a file is sound, but no PR2.
+    #[error("{}: {source}", path.display())]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with the robot.
+        source: Box<ModelError>,
+    },
     /// A joint the PR2 has is missing (or cannot move).
     #[error("the description has no movable joint {name:?}; a PR2 has one")]
     MissingJoint {
