@@ -1,60 +1,18 @@
 //! What can be wrong with a problem file.
 
-use std::io;
-
 use darrt_geom::GeomError;
 use thiserror::Error;
 
 use super::suggest::{hint, listed};
+use crate::text_file::TextFileError;
 
 /// A problem file that cannot be used, with the place and the reason.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ProblemFileError {
-    /// The file cannot be opened or read.
-    #[error("{file}: cannot be read: {source}")]
-    Io {
-        /// The file.
-        file: String,
-        /// What the operating system says.
-        source: io::Error,
-    },
-    /// The path is not a regular file.
-    #[error("{file}: is not a regular file")]
-    NotAFile {
-        /// The path.
-        file: String,
-    },
-    /// The file is larger than a problem file may be.
-    #[error("{file}: has {bytes} bytes, a problem file may have at most {limit}")]
-    TooLarge {
-        /// The file.
-        file: String,
-        /// Its size.
-        bytes: u64,
-        /// The bound.
-        limit: u64,
-    },
-    /// The file is not UTF-8 text.
-    #[error("{file}: is not UTF-8 text, the byte at offset {offset} is not valid")]
-    NotUtf8 {
-        /// The file.
-        file: String,
-        /// Offset of the first bad byte.
-        offset: usize,
-    },
-    /// Brackets or dotted keys are nested too deeply.
-    #[error("{file}:{line}:{column}: nested deeper than {limit} levels")]
-    TooDeep {
-        /// The file.
-        file: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column in characters, from 1.
-        column: usize,
-        /// The bound.
-        limit: usize,
-    },
+    /// The file or text is none that is given to the parser.
+    #[error(transparent)]
+    Text(#[from] TextFileError),
     /// The text is not TOML, or a key or value is not part of the format.
     #[error("{file}:{line}:{column}: {message}{}", hint(nearest.as_deref()))]
     Syntax {
