@@ -13,9 +13,9 @@ mod path;
 #[cfg(test)]
 mod primitives;
 #[cfg(test)]
-mod problem_errors;
-#[cfg(test)]
 mod printing;
+#[cfg(test)]
+mod problem_errors;
 #[cfg(test)]
 mod refusals;
 #[cfg(test)]

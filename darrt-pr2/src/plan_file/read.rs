@@ -34,7 +34,11 @@ impl PlanFile {
         let plan: Self = serde_json::from_str(text)
             .map_err(|error| other_version(text, source_name).unwrap_or_else(|| syntax(text, source_name, &error)))?;
         if plan.version != VERSION {
-            return Err(PlanFileError::Version { file: source_name.to_owned(), found: plan.version, supported: VERSION });
+            return Err(PlanFileError::Version {
+                file: source_name.to_owned(),
+                found: plan.version,
+                supported: VERSION,
+            });
         }
         Ok(plan)
     }
