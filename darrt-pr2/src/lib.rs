@@ -22,6 +22,7 @@ pub mod goal_check;
 pub mod grasp_families;
 pub mod gripper;
 pub mod model;
+mod one_group;
 pub mod pick;
 pub mod picture;
 pub mod place;
