@@ -46,6 +46,20 @@ pub enum ModelError {
         /// Largest accepted value of either.
         bound: f64,
     },
+    /// A joint of an arm starts outside its limits.
+    #[error("joint `{joint}` starts at {value} rad, outside its {which} limits [{lower}, {upper}]")]
+    StartOutside {
+        /// The joint.
+        joint: String,
+        /// Where it starts, rad.
+        value: f64,
+        /// `soft` or `hard`.
+        which: &'static str,
+        /// Lower limit, rad.
+        lower: f64,
+        /// Upper limit, rad.
+        upper: f64,
+    },
     /// The torso height is out of range.
     #[error("torso height {value} m is outside [{lower}, {upper}] m")]
     Torso {
