@@ -92,6 +92,10 @@ pub(crate) fn replace(path: &Path, text: &str) -> io::Result<()> {
 /// When the folder does not exist or cannot be written.
 pub(crate) fn beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    // Asked first, because the answer to this has a plainer message.
+    if !std::fs::metadata(folder)?.is_dir() {
+        return Err(io::ErrorKind::NotADirectory.into());
+    }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".darrt-").suffix(".part");
     #[cfg(unix)]

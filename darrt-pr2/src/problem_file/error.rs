@@ -14,7 +14,7 @@ pub enum ProblemFileError {
     #[error(transparent)]
     Text(#[from] TextFileError),
     /// The text is not TOML, or a key or value is not part of the format.
-    #[error("{file}:{line}:{column}: {message}{}", hint(nearest.as_deref()))]
+    #[error("{file}:{line}:{column}: {}{message}{}", at(key.as_deref()), hint(nearest.as_deref()))]
     Syntax {
         /// The file.
         file: String,
@@ -22,6 +22,9 @@ pub enum ProblemFileError {
         line: usize,
         /// Column in characters, from 1.
         column: usize,
+        /// Path of the key, such as `robot.base[1]`; indices count from 0. `None` when the text is not TOML, or the whole
+        /// file lacks something.
+        key: Option<String>,
         /// What is wrong, with the offending key or value.
         message: String,
         /// The nearest valid key or value.
@@ -115,8 +118,8 @@ pub enum Flaw {
     },
     /// An object or goal is not on its surface.
     #[error(
-        "puts `{name}` at [{}, {}], {outside} m outside the surface `{surface}`; its centre must be inside",
-        at[0], at[1]
+        "puts `{name}` at [{}, {}], {} m outside the surface `{surface}`; its centre must be inside",
+        at[0], at[1], metres(*outside)
     )]
     OffSurface {
         /// What is placed.
@@ -134,6 +137,15 @@ pub enum Flaw {
     /// Keys contradict each other, one is missing, or a value makes no sense with another.
     #[error("{0}")]
     Inconsistent(String),
+}
+
+fn at(key: Option<&str>) -> String {
+    key.map_or_else(String::new, |key| format!("at `{key}`: "))
+}
+
+/// Metres, to a tenth of a millimetre but never to 0.
+fn metres(length: f64) -> f64 {
+    if length < 1e-4 { length } else { (length * 1e4).round() / 1e4 }
 }
 
 /// A flaw and the path of the key that has it.

@@ -6,6 +6,7 @@ use super::error::ProblemFileError;
 use super::nesting::check_nesting;
 use super::shape::ShapeSpec;
 use super::suggest::{nearest_expected, shown};
+use super::toml_path::path_at;
 use super::{ProblemFile, builtin};
 use crate::text_file;
 pub use crate::text_file::MAX_NESTING;
@@ -92,12 +93,13 @@ impl ProblemFile {
 fn parse(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileError> {
     text_file::check(text, source_name, MAX_BYTES, check_nesting)?;
     let mut problem: ProblemFile = toml::from_str(text).map_err(|error| {
-        let offset = error.span().map_or(0, |span| span.start);
-        let (line, column) = text_file::line_and_column(text, offset);
+        let place = error.span().unwrap_or(0..text.len());
+        let (line, column) = text_file::line_and_column(text, place.start);
         ProblemFileError::Syntax {
             file: source_name.to_owned(),
             line,
             column,
+            key: path_at(text, &place).map(|path| shown(&path)),
             nearest: nearest_expected(error.message()).map(|name| shown(&name)),
             message: text_file::one_line(error.message()),
         }
@@ -132,7 +134,7 @@ mod tests {
     #[test]
     fn broken_toml_names_the_line_and_column() {
         assert!(message("format = \"darrt-problem\"\nversion = = 1\n").starts_with("bad.toml:2:"));
-        assert!(message("\"é\" = 1\n").contains("bad.toml:1:1: unknown field `é`"));
+        assert!(message("\"é\" = 1\n").contains("bad.toml:1:1: at `é`: unknown field `é`"));
         assert!(message("").contains("missing field `format`"));
     }
 
