@@ -1,5 +1,6 @@
 //! A sequence of primitive instances, and its replay at any parameter.
 
+use std::fmt;
 use std::sync::Arc;
 
 use crate::domain::Domain;
@@ -8,7 +9,6 @@ use crate::state::State;
 use crate::tree::{NodeId, Tree};
 
 /// One instance, possibly cut short.
-#[derive(Debug)]
 pub struct Step<D: Domain> {
     /// The instance.
     pub instance: Arc<Instance<D>>,
@@ -24,8 +24,18 @@ impl<D: Domain> Clone for Step<D> {
     }
 }
 
+// Not derived, here and below: that would ask the domain to be printable.
+impl<D: Domain> fmt::Debug for Step<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Step")
+            .field("instance", &self.instance)
+            .field("until", &self.until)
+            .field("primitive", &self.primitive)
+            .finish()
+    }
+}
+
 /// What the planner proposes. It is not a solution before the verifier has agreed.
-#[derive(Debug)]
 pub struct Plan<D: Domain> {
     start: State<D>,
     steps: Vec<Step<D>>,
@@ -34,6 +44,12 @@ pub struct Plan<D: Domain> {
 impl<D: Domain> Clone for Plan<D> {
     fn clone(&self) -> Self {
         Self { start: self.start.clone(), steps: self.steps.clone() }
+    }
+}
+
+impl<D: Domain> fmt::Debug for Plan<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Plan").field("start", &self.start).field("steps", &self.steps).finish()
     }
 }
 

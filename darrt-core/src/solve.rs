@@ -4,6 +4,7 @@
 //! iterations. The result is that of the lowest-numbered attempt that solves, so it is the same on any
 //! number of threads.
 
+use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -36,7 +37,6 @@ impl Default for SolveOptions {
 }
 
 /// How it ended. Stopping without a solution is a status, not an error.
-#[derive(Debug)]
 pub struct Outcome<D: Domain> {
     /// The verified solution, if there is one.
     pub solution: Option<Solution<D>>,
@@ -56,6 +56,23 @@ pub struct Outcome<D: Domain> {
     pub elapsed: std::time::Duration,
     /// The last refusal of the verifier, if it refused any plan.
     pub last_refusal: Option<String>,
+}
+
+// Not derived: that would ask the domain to be printable.
+impl<D: Domain> fmt::Debug for Outcome<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Outcome")
+            .field("solution", &self.solution)
+            .field("stop", &self.stop)
+            .field("accounts", &self.accounts)
+            .field("iterations", &self.iterations)
+            .field("nodes", &self.nodes)
+            .field("restarts", &self.restarts)
+            .field("nearest_to_goal", &self.nearest_to_goal)
+            .field("elapsed", &self.elapsed)
+            .field("last_refusal", &self.last_refusal)
+            .finish()
+    }
 }
 
 /// The result of one attempt.

@@ -1,5 +1,7 @@
 //! What can be wrong with a shape, a scene or a mesh file.
 
+use crate::bounded_file::FileError;
+
 /// Why a geometric input was refused.
 ///
 /// Every variant names the offending input, the value it had and the bound it broke, so that the message can be shown
@@ -113,24 +115,9 @@ pub enum GeomError {
         /// Number of vertices.
         count: usize,
     },
-    /// A file could not be read.
-    #[error("cannot read {path}: {reason}")]
-    Unreadable {
-        /// The file.
-        path: String,
-        /// The operating system's words.
-        reason: String,
-    },
-    /// A file is larger than allowed.
-    #[error("{path} has {bytes} bytes, but at most {maximum} are read")]
-    FileTooLarge {
-        /// The file.
-        path: String,
-        /// Its size.
-        bytes: u64,
-        /// The largest size read.
-        maximum: u64,
-    },
+    /// A file was not read.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A file is not what its ending promises.
     #[error("{path} is not a valid {format} file: {reason}")]
     Malformed {

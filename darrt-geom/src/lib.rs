@@ -6,6 +6,7 @@
 //! | what is a rigid body, what stands around? | [`body`], [`scene`] |
 //! | what do things rest on, and where is its edge? | [`support`] |
 //! | which bodies may touch, and why? | [`allowed`], [`body_set`] |
+//! | how are files of unknown size and kind read? | [`bounded_file`] |
 //! | how far may the planner go? | [`collide`] (cheap lower bounds, on top of the private `batch`) |
 //! | how far apart are two bodies exactly, and where? | [`clearance`] |
 //! | what does an independent judge say? | [`oracle`] |
@@ -17,6 +18,7 @@ pub mod allowed;
 mod batch;
 pub mod body;
 pub mod body_set;
+pub mod bounded_file;
 mod check;
 pub mod clearance;
 pub mod collide;
@@ -34,6 +36,7 @@ pub mod support;
 pub use allowed::{AllowedContact, AllowedContacts, ContactReason};
 pub use body::{Body, Part};
 pub use body_set::{BodyIndex, BodySet, MAXIMUM_BODIES};
+pub use bounded_file::FileError;
 pub use check::{MAXIMUM_LENGTH, MINIMUM_LENGTH};
 pub use clearance::Clearance;
 pub use collide::{CollisionModel, CollisionModelBuilder, Hit, Query, Scratch};

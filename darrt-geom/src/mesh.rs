@@ -53,8 +53,9 @@ impl TriangleMesh {
     /// Materials, normals and textures are ignored; OBJ polygons become fans of triangles; groups are merged.
     ///
     /// # Errors
-    /// When the ending is neither `stl` nor `obj`, the file cannot be read, exceeds [`MAXIMUM_FILE_BYTES`], is malformed,
-    /// or its content is refused by [`Self::new`]; when an entry of `scale` is zero, not finite, or beyond 1e4.
+    /// When the ending is neither `stl` nor `obj`, the file is not a regular one, cannot be read, exceeds
+    /// [`MAXIMUM_FILE_BYTES`], is malformed, or its content is refused by [`Self::new`]; when an entry of `scale` is zero,
+    /// not finite, or beyond 1e4.
     pub fn from_file(path: &Path, scale: &Vector3<f64>) -> Result<Self, GeomError> {
         let shown = path.display().to_string();
         for factor in scale.iter() {

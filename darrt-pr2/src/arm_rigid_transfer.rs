@@ -2,13 +2,13 @@
 
 use darrt_core::partial::PartialState;
 use darrt_core::primitive::{Infeasible, Instances, Primitive};
+use darrt_primitives::action::label;
 use darrt_primitives::action::transfer::transfer;
-use darrt_primitives::action::travel::arm_to;
-use darrt_primitives::action::{Chain, label};
 use darrt_primitives::arm_space::ARM;
-use darrt_primitives::wish::{asks_for_group, held_target_in_air, may_carry_along};
+use darrt_primitives::wish::held_target_in_air;
 use rand::Rng;
 
+use crate::one_group::{asks_for_transfer, move_group};
 use crate::world::{World, WorldState};
 
 /// Arm-Rigid-Transfer: the arm moves an attached object towards a goal pose, in straight lines in joint space (paper section 5.1).
@@ -21,7 +21,7 @@ impl Primitive<World> for ArmRigidTransfer {
     }
 
     fn useful(&self, m: &World, from: &WorldState, to: &PartialState<World>) -> bool {
-        held_target_in_air(m, from, to).is_some() || (may_carry_along(m, from, to) && asks_for_group(from, to, ARM))
+        asks_for_transfer(m, from, to, ARM)
     }
 
     fn propagate(
@@ -31,12 +31,9 @@ impl Primitive<World> for ArmRigidTransfer {
         to: &PartialState<World>,
         rng: &mut dyn Rng,
     ) -> Result<Instances<World>, Infeasible> {
-        if let Some(pose) = held_target_in_air(m, from, to) {
-            return transfer(m, from, pose, rng);
+        match held_target_in_air(m, from, to) {
+            Some(pose) => transfer(m, from, pose, rng),
+            None => move_group(m, from, to, ARM, from.mode.gap_m()),
         }
-        let target = to.robot_overlay(m, &from.robot);
-        let mut chain = Chain::at(from);
-        arm_to(m, &mut chain, &target.arm, from.mode.gap_m());
-        chain.finish()
     }
 }

@@ -2,12 +2,11 @@
 
 use darrt_core::partial::PartialState;
 use darrt_core::primitive::{Infeasible, Instances, Primitive};
-use darrt_primitives::action::travel::arm_to;
-use darrt_primitives::action::{Chain, label};
+use darrt_primitives::action::label;
 use darrt_primitives::arm_space::ARM;
-use darrt_primitives::wish::asks_for_group;
 use rand::Rng;
 
+use crate::one_group::{asks_for_transit, move_group};
 use crate::world::{World, WorldState};
 
 /// Arm-Transit: the arm moves towards a joint goal in a straight line in joint space (paper section 5.1).
@@ -20,7 +19,7 @@ impl Primitive<World> for ArmTransit {
     }
 
     fn useful(&self, m: &World, from: &WorldState, to: &PartialState<World>) -> bool {
-        from.mode.is_hand_free() && to.are_objects_met(m, from) && asks_for_group(from, to, ARM)
+        asks_for_transit(m, from, to, ARM)
     }
 
     fn propagate(
@@ -28,12 +27,8 @@ impl Primitive<World> for ArmTransit {
         m: &World,
         from: &WorldState,
         to: &PartialState<World>,
-        rng: &mut dyn Rng,
+        _: &mut dyn Rng,
     ) -> Result<Instances<World>, Infeasible> {
-        let _ = rng;
-        let target = to.robot_overlay(m, &from.robot);
-        let mut chain = Chain::at(from);
-        arm_to(m, &mut chain, &target.arm, m.settings().travel_gap_m);
-        chain.finish()
+        move_group(m, from, to, ARM, m.settings().travel_gap_m)
     }
 }

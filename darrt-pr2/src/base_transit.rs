@@ -2,12 +2,11 @@
 
 use darrt_core::partial::PartialState;
 use darrt_core::primitive::{Infeasible, Instances, Primitive};
-use darrt_primitives::action::travel::base_to;
-use darrt_primitives::action::{Chain, label};
+use darrt_primitives::action::label;
 use darrt_primitives::arm_space::BASE;
-use darrt_primitives::wish::asks_for_group;
 use rand::Rng;
 
+use crate::one_group::{asks_for_transit, move_group};
 use crate::world::{World, WorldState};
 
 /// Base-Transit: the base moves towards a goal pose (paper section 5.1).
@@ -20,7 +19,7 @@ impl Primitive<World> for BaseTransit {
     }
 
     fn useful(&self, m: &World, from: &WorldState, to: &PartialState<World>) -> bool {
-        from.mode.is_hand_free() && to.are_objects_met(m, from) && asks_for_group(from, to, BASE)
+        asks_for_transit(m, from, to, BASE)
     }
 
     fn propagate(
@@ -28,12 +27,8 @@ impl Primitive<World> for BaseTransit {
         m: &World,
         from: &WorldState,
         to: &PartialState<World>,
-        rng: &mut dyn Rng,
+        _: &mut dyn Rng,
     ) -> Result<Instances<World>, Infeasible> {
-        let _ = rng;
-        let target = to.robot_overlay(m, &from.robot);
-        let mut chain = Chain::at(from);
-        base_to(m, &mut chain, &target.base, m.settings().travel_gap_m);
-        chain.finish()
+        move_group(m, from, to, BASE, m.settings().travel_gap_m)
     }
 }

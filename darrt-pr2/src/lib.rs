@@ -5,8 +5,9 @@
 //! | what is the PR2? | [`model`], [`arm`], [`forward`], [`gripper`], [`postures`], [`self_collision`] |
 //! | how does it plan? | [`robot`], [`world`], [`planning`] |
 //! | the primitives of paper section 5.1 | [`arm_transit`], [`straight_line_arm_transit`], [`arm_rigid_transfer`], [`base_transit`], [`base_rigid_transfer`], [`pick`](mod@pick), [`place`](mod@place), [`push`](mod@push) |
-//! | what is a problem? | [`problem_file`], [`schema`], [`grasp_families`], [`goal_check`] |
+//! | what is a problem? | [`problem_file`], [`grasp_families`], [`goal_check`] |
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
+//! | how are files read, written and described? | [`text_file`], [`schema`] |
 //! | what does a person see? | [`cli`], [`picture`] |
 
 pub mod arm;
@@ -21,6 +22,7 @@ pub mod goal_check;
 pub mod grasp_families;
 pub mod gripper;
 pub mod model;
+mod one_group;
 pub mod pick;
 pub mod picture;
 pub mod place;
@@ -34,5 +36,6 @@ pub mod robot;
 pub mod schema;
 pub mod self_collision;
 pub mod straight_line_arm_transit;
+pub mod text_file;
 pub mod verify;
 pub mod world;

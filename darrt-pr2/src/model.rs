@@ -92,9 +92,11 @@ impl Pr2Model {
     /// The robot of a URDF file; meshes are looked up in `mesh_folders` and become their convex hulls.
     ///
     /// # Errors
-    /// As [`from_urdf`](Self::from_urdf), and when the file cannot be read or is no sound URDF.
+    /// [`ModelError::Urdf`] when the file cannot be read or is no sound URDF; [`ModelError::InFile`] with everything that
+    /// [`from_urdf`](Self::from_urdf) reports.
     pub fn from_file(path: &Path, folders: &[PathBuf]) -> Result<Self, ModelError> {
-        Self::from_urdf(&RobotDescription::from_file(path)?, &mesh_folders(folders))
+        let within = |source| ModelError::InFile { path: path.to_path_buf(), source: Box::new(source) };
+        Self::from_urdf(&RobotDescription::from_file(path)?, &mesh_folders(folders)).map_err(within)
     }
 
     /// The robot of a description; `mesh_path` says where the file of a mesh is.

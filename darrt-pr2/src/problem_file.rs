@@ -21,6 +21,7 @@ pub mod robot;
 pub mod settings;
 pub mod shape;
 pub mod suggest;
+mod toml_path;
 pub mod validate;
 pub mod world;
 

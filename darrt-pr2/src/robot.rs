@@ -5,7 +5,7 @@ use darrt_primitives::manipulator::{Configuration, Hand, LinkGroup, Manipulator,
 use nalgebra::{Isometry3, Vector3};
 use rand::{Rng, RngExt};
 
-use crate::arm::{Arm, ArmConfiguration, LimitKind, Side};
+use crate::arm::{Arm, ArmConfiguration, JOINT_NAMES, LimitKind, Side};
 use crate::forward::{
     ArmChain, ArmPoses, FOREARM, Frame, SHOULDER_X, SHOULDER_Y, SHOULDER_Z, TOOL, UPPER_ARM, UPPER_ARM_OFFSET,
     world_from_base,
@@ -67,11 +67,14 @@ impl Pr2 {
     /// Held objects may reach this far beyond the tool frame, metres.
     pub const MAX_HELD_REACH: f64 = 1.0;
 
-    /// The robot with one arm moving; `rest` says where torso, head and the other arm stand.
+    /// The robot with one arm moving within `limits`; `rest` says where that arm starts, and where torso, head and the
+    /// other arm stand, which may use its whole range.
     ///
     /// # Errors
-    /// [`ModelError`] if the torso height is out of range.
+    /// [`ModelError::Torso`], [`ModelError::StartOutside`] if the torso or a joint of an arm is outside its limits.
     pub fn new(model: Pr2Model, side: Side, limits: LimitKind, rest: WholeBody) -> Result<Self, ModelError> {
+        check_start(&model, side, limits, &rest)?;
+        check_start(&model, side.other(), LimitKind::Hard, &rest)?;
         let arm = model.arm(side, rest.torso_m, limits)?;
         let at_origin = model.link_poses(&WholeBody { base: [0.0; 3], ..rest.clone() });
         let moving: Vec<ArmBody> = model.arm_bodies(side).to_vec();
@@ -130,6 +133,22 @@ impl Pr2 {
         let found = self.joint_radius.iter().enumerate().find(|(i, _)| *i as f64 >= steps || *i == last);
         found.map_or([f64::INFINITY; 7], |(_, radii)| *radii)
     }
+}
+
+/// Every joint of an arm is inside its limits.
+fn check_start(model: &Pr2Model, side: Side, kind: LimitKind, rest: &WholeBody) -> Result<(), ModelError> {
+    let values = rest.arms.get(side.index()).into_iter().flatten();
+    for ((name, limit), &value) in JOINT_NAMES.iter().zip(model.limits(side, kind)).zip(values) {
+        if !limit.contains(value) {
+            let which = match kind {
+                LimitKind::Soft => "soft",
+                LimitKind::Hard => "hard",
+            };
+            let joint = format!("{}_{name}_joint", side.prefix());
+            return Err(ModelError::StartOutside { joint, value, which, lower: limit.lower, upper: limit.upper });
+        }
+    }
+    Ok(())
 }
 
 fn group_of(frame: Frame) -> LinkGroup {

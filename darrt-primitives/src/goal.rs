@@ -60,7 +60,7 @@ const UPRIGHT_TOLERANCE_RAD: f64 = 0.01;
 
 impl ObjectGoal {
     /// Is this goal met?
-    pub fn is_met<M: Manipulator>(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> bool {
+    pub fn is_met<M: Manipulator>(&self, state: &TabletopState<M>) -> bool {
         let Some(pose) = state.object(self.object) else { return false };
         let held = state.mode.held().is_some_and(|h| h.object == self.object);
         let resting = state.mode.support_of(self.object);
@@ -79,7 +79,6 @@ impl ObjectGoal {
         let up = pose.rotation * Vector3::z();
         let yaw_ok =
             self.yaw.is_none_or(|(yaw, tolerance)| turn(pose.rotation.euler_angles().2, yaw).abs() <= tolerance);
-        let _ = m;
         grip && is_there && yaw_ok && up.angle(&Vector3::z()) <= UPRIGHT_TOLERANCE_RAD
     }
 
@@ -113,8 +112,8 @@ impl TabletopGoal {
 }
 
 impl<M: Manipulator> Goal<Tabletop<M>> for TabletopGoal {
-    fn is_satisfied(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> bool {
-        self.groups.iter().all(|alternatives| alternatives.iter().any(|goal| goal.is_met(m, state)))
+    fn is_satisfied(&self, _: &Tabletop<M>, state: &TabletopState<M>) -> bool {
+        self.groups.iter().all(|alternatives| alternatives.iter().any(|goal| goal.is_met(state)))
     }
 
     fn sample(&self, m: &Tabletop<M>, rng: &mut dyn Rng) -> Option<PartialState<Tabletop<M>>> {

@@ -13,6 +13,8 @@ mod path;
 #[cfg(test)]
 mod primitives;
 #[cfg(test)]
+mod printing;
+#[cfg(test)]
 mod problem_errors;
 #[cfg(test)]
 mod refusals;

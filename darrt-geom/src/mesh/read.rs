@@ -1,11 +1,11 @@
 //! STL and OBJ files as triangle soups, bounded in size and never panicking.
 
 use super::{MAXIMUM_FILE_BYTES, MAXIMUM_TRIANGLES};
+use crate::bounded_file::read_bytes;
 use crate::check;
 use crate::error::GeomError;
 use nalgebra::Point3;
-use std::fs::File;
-use std::io::{Cursor, Read};
+use std::io::Cursor;
 use std::path::Path;
 
 /// What a file holds, before it is checked.
@@ -24,25 +24,7 @@ pub(super) fn soup(path: &Path) -> Result<Soup, GeomError> {
         "obj" => obj,
         _ => return Err(GeomError::UnknownFormat { path: shown, ending }),
     };
-    parse(&shown, &bytes(path, &shown)?)
-}
-
-/// The file's bytes, at most [`MAXIMUM_FILE_BYTES`] of them.
-fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, GeomError> {
-    let unreadable =
-        |error: std::io::Error| GeomError::Unreadable { path: shown.to_owned(), reason: error.to_string() };
-    let file = File::open(path).map_err(unreadable)?;
-    let told = file.metadata().map_err(unreadable)?.len();
-    let mut bytes = Vec::new();
-    if told <= MAXIMUM_FILE_BYTES {
-        // The size told can be wrong (pipes, growing files), so the reading is bounded as well.
-        file.take(MAXIMUM_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    }
-    let size = told.max(bytes.len() as u64);
-    if size > MAXIMUM_FILE_BYTES {
-        return Err(GeomError::FileTooLarge { path: shown.to_owned(), bytes: size, maximum: MAXIMUM_FILE_BYTES });
-    }
-    Ok(bytes)
+    parse(&shown, &read_bytes(path, MAXIMUM_FILE_BYTES)?)
 }
 
 /// STL, ascii or binary.

@@ -1,7 +1,7 @@
 use super::read::{obj, stl};
 use super::*;
+use crate::bounded_file::FileError;
 use proptest::prelude::*;
-use std::io::Write as _;
 
 const ASCII: &str = "solid one\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
                      endloop\nendfacet\nendsolid one\n";
@@ -55,18 +55,19 @@ fn malformed_files_are_errors_that_name_the_file() {
 
 #[test]
 fn files_are_read_scaled_and_checked() {
-    let dir = std::env::temp_dir().join(format!("darrt-geom-mesh-{}", std::process::id()));
-    std::fs::create_dir_all(&dir).unwrap();
-    let path = dir.join("one.STL");
-    std::fs::File::create(&path).unwrap().write_all(ASCII.as_bytes()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("one.STL");
+    std::fs::write(&path, ASCII).unwrap();
     let mesh = TriangleMesh::from_file(&path, &Vector3::new(2.0, 1.0, 1.0)).unwrap();
     assert_eq!(mesh.vertices().iter().map(|p| p.x).fold(0.0, f64::max), 2.0);
     assert!(TriangleMesh::from_file(&path, &Vector3::zeros()).is_err());
-    let other = TriangleMesh::from_file(&dir.join("a.dae"), &Vector3::repeat(1.0));
-    assert!(matches!(other, Err(GeomError::UnknownFormat { .. })));
-    let missing = TriangleMesh::from_file(&dir.join("none.obj"), &Vector3::repeat(1.0));
-    assert!(matches!(missing, Err(GeomError::Unreadable { .. })));
-    std::fs::remove_dir_all(&dir).unwrap();
+    let refused = |name: &str| TriangleMesh::from_file(&folder.path().join(name), &Vector3::repeat(1.0)).unwrap_err();
+    assert!(matches!(refused("a.dae"), GeomError::UnknownFormat { .. }));
+    assert!(matches!(refused("none.obj"), GeomError::File(FileError::Unreadable { .. })));
+    std::fs::create_dir(folder.path().join("folder.obj")).unwrap();
+    assert!(matches!(refused("folder.obj"), GeomError::File(FileError::NotAFile { .. })));
+    std::fs::File::create(folder.path().join("large.stl")).unwrap().set_len(MAXIMUM_FILE_BYTES + 1).unwrap();
+    assert!(matches!(refused("large.stl"), GeomError::File(FileError::TooLarge { .. })));
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use super::exit::{Exit, Failure};
+use crate::text_file;
 
 /// Where results are printed. A reader that closes its end is not an error: the rest is dropped.
 pub(super) struct Output {
@@ -59,7 +60,7 @@ pub(super) fn writable(path: &Path) -> Result<PathBuf, Failure> {
         return Err(refuse("is not the name of a file".to_owned()));
     }
     // The new file is made and dropped again.
-    beside(&place).map_err(|error| refuse(format!("cannot be written: {error}")))?;
+    text_file::beside(&place).map_err(|error| refuse(format!("cannot be written: {error}")))?;
     Ok(place)
 }
 
@@ -68,30 +69,8 @@ pub(super) fn writable(path: &Path) -> Result<PathBuf, Failure> {
 /// # Errors
 /// [`Exit::CannotWrite`] with the path.
 pub(super) fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
-    let write = || {
-        let mut file = beside(path)?;
-        file.write_all(text.as_bytes())?;
-        file.as_file().sync_all()?;
-        file.persist(path).map_err(|error| error.error)?;
-        Ok(())
-    };
-    write().map_err(|error: io::Error| {
-        Failure::new(Exit::CannotWrite, format!("{}: cannot be written: {error}", path.display()))
-    })
-}
-
-/// A new file in the folder of `path` that disappears unless it is kept.
-fn beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".darrt-").suffix(".part");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        // As for any new file: the process's mask decides.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
+    text_file::replace(path, text)
+        .map_err(|error| Failure::new(Exit::CannotWrite, format!("{}: cannot be written: {error}", path.display())))
 }
 
 /// A name as part of a file name: letters, digits, dots, dashes and underscores stay, runs of all else become a dash.
@@ -147,13 +126,14 @@ mod tests {
     }
 
     #[test]
-    fn files_are_replaced_whole_and_nothing_is_left_behind() {
+    fn a_place_that_can_be_written_is_left_as_it_was() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("picture.svg");
         let place = writable(&path).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         write_file(&place, "one").unwrap();
-        write_file(&writable(&path).unwrap(), "two").unwrap();
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
+        writable(&path).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "one");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 

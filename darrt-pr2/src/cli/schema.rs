@@ -3,8 +3,9 @@
 use super::args::{SchemaKind, SchemaOptions};
 use super::exit::{Exit, Failure};
 use super::output::Output;
-use crate::plan_file::schema::plan_schema_text;
-use crate::schema::problem_schema_text;
+use crate::plan_file::PlanFile;
+use crate::problem_file::ProblemFile;
+use crate::schema::schema_text;
 
 /// Prints a schema.
 ///
@@ -12,8 +13,8 @@ use crate::schema::problem_schema_text;
 /// None in practice but a standard output that cannot be written.
 pub(super) fn run(options: &SchemaOptions, output: &mut Output) -> Result<Exit, Failure> {
     let text = match options.kind {
-        SchemaKind::Problem => problem_schema_text(),
-        SchemaKind::Plan => plan_schema_text(),
+        SchemaKind::Problem => schema_text::<ProblemFile>(),
+        SchemaKind::Plan => schema_text::<PlanFile>(),
     };
     output.print(&text.map_err(|error| Failure::input(error.to_string()))?)?;
     Ok(Exit::Solved)

@@ -1,5 +1,7 @@
 //! What can be wrong with a robot.
 
+use std::path::PathBuf;
+
 use darrt_primitives::kinematics::UrdfError;
 
 /// Why a robot, or a part of it, could not be built.
@@ -9,6 +11,14 @@ pub enum ModelError {
     /// The description is not sound.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
+    /// The description in a file is sound, but no PR2.
+    #[error("{}: {source}", path.display())]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with the robot.
+        source: Box<ModelError>,
+    },
     /// A joint the PR2 has is missing (or cannot move).
     #[error("the description has no movable joint {name:?}; a PR2 has one")]
     MissingJoint {
@@ -35,6 +45,20 @@ pub enum ModelError {
         angle: f64,
         /// Largest accepted value of either.
         bound: f64,
+    },
+    /// A joint of an arm starts outside its limits.
+    #[error("joint `{joint}` starts at {value} rad, outside its {which} limits [{lower}, {upper}]")]
+    StartOutside {
+        /// The joint.
+        joint: String,
+        /// Where it starts, rad.
+        value: f64,
+        /// `soft` or `hard`.
+        which: &'static str,
+        /// Lower limit, rad.
+        lower: f64,
+        /// Upper limit, rad.
+        upper: f64,
     },
     /// The torso height is out of range.
     #[error("torso height {value} m is outside [{lower}, {upper}] m")]

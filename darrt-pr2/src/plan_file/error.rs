@@ -5,19 +5,15 @@ use std::io;
 use thiserror::Error;
 
 use crate::problem_file::suggest::hint;
+use crate::text_file::TextFileError;
 
 /// A plan file that cannot be read or written, with the place and the reason.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PlanFileError {
-    /// The file cannot be opened or read.
-    #[error("{file}: cannot be read: {source}")]
-    Read {
-        /// The file.
-        file: String,
-        /// What the operating system says.
-        source: io::Error,
-    },
+    /// The file or text is none that is given to the parser.
+    #[error(transparent)]
+    Text(#[from] TextFileError),
     /// The file cannot be written; what was there before is untouched.
     #[error("{file}: cannot be written: {source}")]
     Write {
@@ -25,42 +21,6 @@ pub enum PlanFileError {
         file: String,
         /// What the operating system says.
         source: io::Error,
-    },
-    /// The path is not a regular file.
-    #[error("{file}: is not a regular file")]
-    NotAFile {
-        /// The path.
-        file: String,
-    },
-    /// The file is larger than a plan file may be.
-    #[error("{file}: has {bytes} bytes, a plan file may have at most {limit}")]
-    TooLarge {
-        /// The file.
-        file: String,
-        /// Its size.
-        bytes: u64,
-        /// The bound.
-        limit: u64,
-    },
-    /// The file is not UTF-8 text.
-    #[error("{file}: is not UTF-8 text, the byte at offset {offset} is not valid")]
-    NotUtf8 {
-        /// The file.
-        file: String,
-        /// Offset of the first bad byte.
-        offset: usize,
-    },
-    /// Brackets are nested too deeply.
-    #[error("{file}:{line}:{column}: nested deeper than {limit} levels")]
-    TooDeep {
-        /// The file.
-        file: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column in characters, from 1.
-        column: usize,
-        /// The bound.
-        limit: usize,
     },
     /// The text is not JSON, or a key or value is not part of the format.
     #[error("{file}:{line}:{column}: at `{key}`: {message}{}", hint(nearest.as_deref()))]

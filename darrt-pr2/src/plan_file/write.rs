@@ -1,7 +1,6 @@
 //! Writing a plan file, all of it or nothing.
 
 use std::fmt::Display;
-use std::io::Write as _;
 use std::path::Path;
 
 use serde::Serialize as _;
@@ -9,6 +8,7 @@ use serde_json::Serializer;
 
 use super::layout::Lines;
 use super::{PlanFile, PlanFileError, Pose, Waypoint};
+use crate::text_file;
 
 impl PlanFile {
     /// The file's text: JSON with one waypoint per line and a final newline.
@@ -37,7 +37,7 @@ impl PlanFile {
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), PlanFileError> {
         let path = path.as_ref();
         let text = self.to_json()?;
-        replace(path, text.as_bytes())
+        text_file::replace(path, &text)
             .map_err(|source| PlanFileError::Write { file: path.display().to_string(), source })
     }
 
@@ -53,24 +53,6 @@ impl PlanFile {
         }
         Ok(())
     }
-}
-
-/// Puts `bytes` at `path` in one move.
-fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".darrt-plan-").suffix(".part");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        // As for any new file: the process's mask decides.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(path).map_err(|error| error.error)?;
-    Ok(())
 }
 
 fn waypoint(at: &Waypoint, key: impl Display) -> Result<(), PlanFileError> {

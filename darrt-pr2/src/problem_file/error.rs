@@ -1,62 +1,20 @@
 //! What can be wrong with a problem file.
 
-use std::io;
-
 use darrt_geom::GeomError;
 use thiserror::Error;
 
 use super::suggest::{hint, listed};
+use crate::text_file::TextFileError;
 
 /// A problem file that cannot be used, with the place and the reason.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ProblemFileError {
-    /// The file cannot be opened or read.
-    #[error("{file}: cannot be read: {source}")]
-    Io {
-        /// The file.
-        file: String,
-        /// What the operating system says.
-        source: io::Error,
-    },
-    /// The path is not a regular file.
-    #[error("{file}: is not a regular file")]
-    NotAFile {
-        /// The path.
-        file: String,
-    },
-    /// The file is larger than a problem file may be.
-    #[error("{file}: has {bytes} bytes, a problem file may have at most {limit}")]
-    TooLarge {
-        /// The file.
-        file: String,
-        /// Its size.
-        bytes: u64,
-        /// The bound.
-        limit: u64,
-    },
-    /// The file is not UTF-8 text.
-    #[error("{file}: is not UTF-8 text, the byte at offset {offset} is not valid")]
-    NotUtf8 {
-        /// The file.
-        file: String,
-        /// Offset of the first bad byte.
-        offset: usize,
-    },
-    /// Brackets or dotted keys are nested too deeply.
-    #[error("{file}:{line}:{column}: nested deeper than {limit} levels")]
-    TooDeep {
-        /// The file.
-        file: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column in characters, from 1.
-        column: usize,
-        /// The bound.
-        limit: usize,
-    },
+    /// The file or text is none that is given to the parser.
+    #[error(transparent)]
+    Text(#[from] TextFileError),
     /// The text is not TOML, or a key or value is not part of the format.
-    #[error("{file}:{line}:{column}: {message}{}", hint(nearest.as_deref()))]
+    #[error("{file}:{line}:{column}: {}{message}{}", at(key.as_deref()), hint(nearest.as_deref()))]
     Syntax {
         /// The file.
         file: String,
@@ -64,6 +22,9 @@ pub enum ProblemFileError {
         line: usize,
         /// Column in characters, from 1.
         column: usize,
+        /// Path of the key, such as `robot.base[1]`; indices count from 0. `None` when the text is not TOML, or the whole
+        /// file lacks something.
+        key: Option<String>,
         /// What is wrong, with the offending key or value.
         message: String,
         /// The nearest valid key or value.
@@ -157,8 +118,8 @@ pub enum Flaw {
     },
     /// An object or goal is not on its surface.
     #[error(
-        "puts `{name}` at [{}, {}], {outside} m outside the surface `{surface}`; its centre must be inside",
-        at[0], at[1]
+        "puts `{name}` at [{}, {}], {} m outside the surface `{surface}`; its centre must be inside",
+        at[0], at[1], metres(*outside)
     )]
     OffSurface {
         /// What is placed.
@@ -176,6 +137,15 @@ pub enum Flaw {
     /// Keys contradict each other, one is missing, or a value makes no sense with another.
     #[error("{0}")]
     Inconsistent(String),
+}
+
+fn at(key: Option<&str>) -> String {
+    key.map_or_else(String::new, |key| format!("at `{key}`: "))
+}
+
+/// Metres, to a tenth of a millimetre but never to 0.
+fn metres(length: f64) -> f64 {
+    if length < 1e-4 { length } else { (length * 1e4).round() / 1e4 }
 }
 
 /// A flaw and the path of the key that has it.

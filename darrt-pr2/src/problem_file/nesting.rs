@@ -1,12 +1,5 @@
 //! A look at the nesting of a TOML text before it is parsed, so that no file can exhaust the stack.
 
-/// Where a text is nested too deeply.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TooDeep {
-    /// Byte offset of the bracket or dot that is one too many.
-    pub offset: usize,
-}
-
 /// What the scanner is inside of.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Inside {
@@ -25,8 +18,8 @@ enum Inside {
 /// refuse or accept, the parser has the last word.
 ///
 /// # Errors
-/// The place of the first bracket or dot beyond `limit`.
-pub fn check_nesting(text: &str, limit: usize) -> Result<(), TooDeep> {
+/// The byte offset of the first bracket or dot beyond `limit`.
+pub fn check_nesting(text: &str, limit: usize) -> Result<(), usize> {
     let bytes = text.as_bytes();
     let mut inside = Inside::Plain;
     let mut brackets = 0_usize;
@@ -74,7 +67,7 @@ pub fn check_nesting(text: &str, limit: usize) -> Result<(), TooDeep> {
             },
         }
         if brackets + dots > limit {
-            return Err(TooDeep { offset });
+            return Err(offset);
         }
         offset += width;
     }
@@ -92,7 +85,7 @@ mod tests {
             assert!(check_nesting(text, 2).is_err(), "{text}");
         }
         let deep = format!("a = {}", "[".repeat(10_000));
-        assert_eq!(check_nesting(&deep, 64), Err(TooDeep { offset: 4 + 64 }));
+        assert_eq!(check_nesting(&deep, 64), Err(4 + 64));
         let dotted = format!("{}z = 1", "a.".repeat(10_000));
         assert!(check_nesting(&dotted, 64).is_err());
     }

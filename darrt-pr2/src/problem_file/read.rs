@@ -1,23 +1,18 @@
 //! Reading a problem file: guards first, then TOML, then defaults, then validation.
 
-use std::fs::File;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use super::error::ProblemFileError;
 use super::nesting::check_nesting;
 use super::shape::ShapeSpec;
 use super::suggest::{nearest_expected, shown};
+use super::toml_path::path_at;
 use super::{ProblemFile, builtin};
+use crate::text_file;
+pub use crate::text_file::MAX_NESTING;
 
 /// Largest accepted problem file in bytes (4 MiB).
 pub const MAX_BYTES: u64 = 4 * 1024 * 1024;
-
-/// Deepest accepted nesting of brackets and dotted keys.
-pub const MAX_NESTING: usize = 64;
-
-/// Longest message of the TOML parser that is passed on, in characters.
-const MAX_MESSAGE: usize = 600;
 
 impl ProblemFile {
     /// Reads, completes and validates the problem file at `path`.
@@ -25,12 +20,12 @@ impl ProblemFile {
     /// Relative paths of meshes and of a robot description are taken from the folder of the file.
     ///
     /// # Errors
-    /// When the file cannot be read, is larger than [`MAX_BYTES`], nested deeper than [`MAX_NESTING`], is not TOML, or
+    /// When the file is not a regular one, cannot be read, is larger than [`MAX_BYTES`], nested deeper than [`MAX_NESTING`], is not TOML, or
     /// breaks a rule of the format; the error names the file, the place, the value and the bound.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ProblemFileError> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let text = read_text(path, &name)?;
+        let text = text_file::read(path, MAX_BYTES)?;
         let mut problem = parse(&text, &name)?;
         if let Some(folder) = path.parent() {
             problem.resolve_paths(folder);
@@ -94,46 +89,19 @@ impl ProblemFile {
     }
 }
 
-/// Reads at most [`MAX_BYTES`] of text from a regular file.
-fn read_text(path: &Path, name: &str) -> Result<String, ProblemFileError> {
-    let io = |source| ProblemFileError::Io { file: name.to_owned(), source };
-    let too_large = |bytes| ProblemFileError::TooLarge { file: name.to_owned(), bytes, limit: MAX_BYTES };
-    let metadata = std::fs::metadata(path).map_err(io)?;
-    if !metadata.is_file() {
-        return Err(ProblemFileError::NotAFile { file: name.to_owned() });
-    }
-    if metadata.len() > MAX_BYTES {
-        return Err(too_large(metadata.len()));
-    }
-    let mut bytes = Vec::new();
-    File::open(path).map_err(io)?.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(too_large(bytes.len() as u64));
-    }
-    String::from_utf8(bytes)
-        .map_err(|error| ProblemFileError::NotUtf8 { file: name.to_owned(), offset: error.utf8_error().valid_up_to() })
-}
-
 /// Guards, TOML and defaults; no validation.
 fn parse(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileError> {
-    let file = || source_name.to_owned();
-    if text.len() as u64 > MAX_BYTES {
-        return Err(ProblemFileError::TooLarge { file: file(), bytes: text.len() as u64, limit: MAX_BYTES });
-    }
-    check_nesting(text, MAX_NESTING).map_err(|too_deep| {
-        let (line, column) = line_and_column(text, too_deep.offset);
-        ProblemFileError::TooDeep { file: file(), line, column, limit: MAX_NESTING }
-    })?;
+    text_file::check(text, source_name, MAX_BYTES, check_nesting)?;
     let mut problem: ProblemFile = toml::from_str(text).map_err(|error| {
-        let offset = error.span().map_or(0, |span| span.start);
-        let (line, column) = line_and_column(text, offset);
-        let message: String = error.message().chars().take(MAX_MESSAGE).collect();
+        let place = error.span().unwrap_or(0..text.len());
+        let (line, column) = text_file::line_and_column(text, place.start);
         ProblemFileError::Syntax {
-            file: file(),
+            file: source_name.to_owned(),
             line,
             column,
+            key: path_at(text, &place).map(|path| shown(&path)),
             nearest: nearest_expected(error.message()).map(|name| shown(&name)),
-            message: message.replace('\n', "; "),
+            message: text_file::one_line(error.message()),
         }
     })?;
     problem.normalise();
@@ -153,18 +121,11 @@ impl ProblemFile {
     }
 }
 
-/// Line and column, both from 1, of a byte offset; the column counts characters.
-fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
-    let before = text.get(..offset).unwrap_or(text);
-    let line = before.matches('\n').count() + 1;
-    let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-    (line, column)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::Write as _;
+    use crate::text_file::TextFileError as T;
+    use darrt_geom::FileError as F;
 
     fn message(text: &str) -> String {
         ProblemFile::from_toml(text, "bad.toml").unwrap_err().to_string()
@@ -173,7 +134,7 @@ mod tests {
     #[test]
     fn broken_toml_names_the_line_and_column() {
         assert!(message("format = \"darrt-problem\"\nversion = = 1\n").starts_with("bad.toml:2:"));
-        assert!(message("\"é\" = 1\n").contains("bad.toml:1:1: unknown field `é`"));
+        assert!(message("\"é\" = 1\n").contains("bad.toml:1:1: at `é`: unknown field `é`"));
         assert!(message("").contains("missing field `format`"));
     }
 
@@ -195,7 +156,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("large.toml");
         // A sparse file: 100 MB that are never written.
-        File::create(&path).unwrap().set_len(100_000_000).unwrap();
+        std::fs::File::create(&path).unwrap().set_len(100_000_000).unwrap();
         let message = ProblemFile::read(&path).unwrap_err().to_string();
         assert!(message.contains("large.toml"), "{message}");
         assert!(message.contains("100000000") && message.contains("4194304"), "{message}");
@@ -207,11 +168,13 @@ mod tests {
     fn missing_files_folders_and_binary_files_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         let missing = folder.path().join("missing.toml");
-        assert!(matches!(ProblemFile::read(&missing), Err(ProblemFileError::Io { .. })));
-        assert!(matches!(ProblemFile::read(folder.path()), Err(ProblemFileError::NotAFile { .. })));
+        assert!(matches!(ProblemFile::read(&missing), Err(ProblemFileError::Text(T::File(F::Unreadable { .. })))));
+        let not_a_file = ProblemFile::read(folder.path());
+        assert!(matches!(not_a_file, Err(ProblemFileError::Text(T::File(F::NotAFile { .. })))));
         let binary = folder.path().join("binary.toml");
-        File::create(&binary).unwrap().write_all(b"abc\xff\xfe").unwrap();
-        assert!(matches!(ProblemFile::read(&binary), Err(ProblemFileError::NotUtf8 { offset: 3, .. })));
+        std::fs::write(&binary, b"abc\xff\xfe").unwrap();
+        let not_text = ProblemFile::read(&binary);
+        assert!(matches!(not_text, Err(ProblemFileError::Text(T::File(F::NotUtf8 { offset: 3, .. })))));
     }
 
     #[test]

@@ -54,7 +54,7 @@ pub struct Robot {
     /// Height of the torso lift in metres, 0 to 0.33; fixed during planning.
     #[serde(default = "default_torso")]
     pub torso_m: f64,
-    /// Start of the base: x, y (m) and yaw (rad) in the world frame.
+    /// Start of the base: x, y (m) and yaw (rad, -pi to pi) in the world frame.
     pub base: [f64; 3],
     /// Start posture of the manipulating arm, by name.
     #[serde(default, skip_serializing_if = "Option::is_none")]

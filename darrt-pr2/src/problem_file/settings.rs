@@ -133,7 +133,7 @@ pub struct Transit {
 
 impl Default for Transit {
     fn default() -> Self {
-        Self { postures: ["side", "up", "untucked", "above_and_to_side", "tucked"].map(str::to_owned).to_vec() }
+        Self { postures: ["side", "up", "untucked", "above_and_to_side"].map(str::to_owned).to_vec() }
     }
 }
 

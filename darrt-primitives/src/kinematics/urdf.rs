@@ -10,6 +10,7 @@ mod error;
 use std::path::Path;
 use std::sync::Arc;
 
+use darrt_geom::bounded_file::read_text;
 use nalgebra::{Isometry3, Unit, Vector3};
 
 use super::guard;
@@ -139,7 +140,7 @@ impl RobotDescription {
     /// Reads and checks URDF text.
     ///
     /// # Errors
-    /// Every [`UrdfError`] but `Io`: each names the element, the value found and the bound it broke.
+    /// Every [`UrdfError`] but those of files: each names the element, the value found and the bound it broke.
     pub fn from_text(text: &str) -> Result<Self, UrdfError> {
         guard::check(text)?;
         let parsed = urdf_rs::read_from_string(text).map_err(|e| UrdfError::Syntax { message: e.to_string() })?;
@@ -149,19 +150,12 @@ impl RobotDescription {
     /// Reads and checks a URDF file.
     ///
     /// # Errors
-    /// [`UrdfError::Io`] when the file cannot be read as UTF-8 text, [`UrdfError::TooLarge`] before reading a file
-    /// beyond [`guard::MAX_BYTES`], and everything [`from_text`](Self::from_text) reports.
+    /// [`UrdfError::File`] when the file is not a regular one, is larger than [`guard::MAX_BYTES`] or cannot be read as
+    /// UTF-8 text; [`UrdfError::InFile`] with everything that [`from_text`](Self::from_text) reports.
     pub fn from_file(path: &Path) -> Result<Self, UrdfError> {
-        let io = |source| UrdfError::Io { path: path.to_path_buf(), source };
-        let bytes = std::fs::metadata(path).map_err(io)?.len();
-        if bytes > guard::MAX_BYTES as u64 {
-            return Err(UrdfError::TooLarge {
-                what: "file",
-                bytes: usize::try_from(bytes).unwrap_or(usize::MAX),
-                bound: guard::MAX_BYTES,
-            });
-        }
-        Self::from_text(&std::fs::read_to_string(path).map_err(io)?)
+        let text = read_text(path, guard::MAX_BYTES as u64).map_err(UrdfError::File)?;
+        let within = |source| UrdfError::InFile { path: path.to_path_buf(), source: Box::new(source) };
+        Self::from_text(&text).map_err(within)
     }
 }
 

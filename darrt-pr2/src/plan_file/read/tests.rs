@@ -78,18 +78,20 @@ fn other_versions_and_formats_are_refused() {
 
 #[test]
 fn hostile_files_are_refused_before_parsing() {
+    use darrt_geom::FileError as F;
+    use text_file::TextFileError as T;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("plan.json");
     let refuse = |path: &Path| PlanFile::read(path).unwrap_err();
-    assert!(matches!(refuse(&path), PlanFileError::Read { .. }));
-    assert!(matches!(refuse(folder.path()), PlanFileError::NotAFile { .. }));
+    assert!(matches!(refuse(&path), PlanFileError::Text(T::File(F::Unreadable { .. }))));
+    assert!(matches!(refuse(folder.path()), PlanFileError::Text(T::File(F::NotAFile { .. }))));
     std::fs::write(&path, [b'{', 0xff]).unwrap();
-    assert!(matches!(refuse(&path), PlanFileError::NotUtf8 { offset: 1, .. }));
+    assert!(matches!(refuse(&path), PlanFileError::Text(T::File(F::NotUtf8 { offset: 1, .. }))));
     std::fs::write(&path, "[".repeat(10_000)).unwrap();
-    assert!(matches!(refuse(&path), PlanFileError::TooDeep { line: 1, column: 65, limit: 64, .. }));
+    assert!(matches!(refuse(&path), PlanFileError::Text(T::TooDeep { line: 1, column: 65, limit: 64, .. })));
     // A sparse file: large by its metadata, nothing on the disk.
     std::fs::File::create(&path).unwrap().set_len(MAX_BYTES + 1).unwrap();
-    assert!(matches!(refuse(&path), PlanFileError::TooLarge { .. }));
+    assert!(matches!(refuse(&path), PlanFileError::Text(T::File(F::TooLarge { .. }))));
     for text in ["", "nonsense", "{}", "[]", "null", "\"\\"] {
         std::fs::write(&path, text).unwrap();
         assert!(refuse(&path).to_string().contains("plan.json:1:"), "{text}");

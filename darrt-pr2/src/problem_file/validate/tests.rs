@@ -51,10 +51,10 @@ fn the_small_problem_is_valid() {
 
 #[test]
 fn unknown_keys_and_values_give_the_nearest() {
-    refused("version = 1", "version = 1\ntitel = \"x\"", &["small.toml:4:1", "titel", "did you mean `title`?"]);
-    refused("size = [", "sise = [", &["sise", "did you mean `size`?"]);
+    refused("version = 1", "version = 1\ntitel = \"x\"", &["small.toml:4:1: at `titel`: ", "did you mean `title`?"]);
+    refused("size = [", "sise = [", &["at `obstacle[0].shape.box.sise`", "did you mean `size`?"]);
     refused("{ box =", "{ boks =", &["boks", "did you mean `box`?"]);
-    refused("\"Pick\"", "\"Pik\"", &[":5:31", "Pik", "did you mean `Pick`?"]);
+    refused("\"Pick\"", "\"Pik\"", &[":5:31: at `primitives[1]`: ", "Pik", "did you mean `Pick`?"]);
     refused("\"Pick\"", "\"Push-Pull\"", &["Push-Pull", "did you mean `Push`?"]);
     refused("[robot]", "[robott]", &["robott", "did you mean `robot`?"]);
     refused("[robot]", "[robot]\nlimits = \"hart\"", &["hart", "did you mean `hard`?"]);
@@ -140,6 +140,7 @@ fn ranges_and_shares_are_bounded() {
     refused_more("[push]\nedge_distance_m = [0.1, 0.05]", &["`push.edge_distance_m`", "[0.1, 0.05]"]);
     refused_more("[push]\ngap_m = 0.2", &["`push.gap_m`", "0.2", "[0, 0.09]"]);
     refused_more("[place]\napproach_directions = [[0, 0, 1]]", &["approach_directions[0][2]", "from above"]);
+    refused("base = [-1.0, 0.0, 0.0]", "base = [-1.0, 0.0, 4.0]", &["`robot.base[2]`", "is 4", "[-3.14159"]);
     refused("[robot]", "[robot]\ntorso_m = 0.5", &["`robot.torso_m`", "0.5", "[0, 0.33]"]);
     refused("version = 1", "version = 2", &["`version`", "is 2", "1"]);
 }
@@ -149,7 +150,7 @@ fn starts_are_complete_and_single() {
     refused("[robot]", "[robot]\njoints = [0, 0]", &["`robot.joints`", "has 2 entries", "7"]);
     let both = "[robot]\nposture = \"side\"\njoints = [0, 0, 0, 0, 0, 0, 0]";
     refused("[robot]", both, &["exactly one of `posture`, `joints`"]);
-    refused("base = [-1.0, 0.0, 0.0]", "", &["missing field `base`", ":6:1"]);
+    refused("base = [-1.0, 0.0, 0.0]", "", &[":6:1: at `robot`: missing field `base`"]);
     refused("at = [0.2, 0.2]", "at = [0.2, 0.2, 0.7]", &["`obstacle[1].at`", "has 3 entries", "must have 2"]);
 }
 

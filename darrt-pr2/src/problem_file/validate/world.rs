@@ -1,5 +1,7 @@
 //! Rules of the robot, the bounds, the obstacles and the surfaces.
 
+use std::f64::consts::PI;
+
 use super::names::{obstacle, posture, surface};
 use super::numbers::{length, ordered, size, within};
 use crate::problem_file::error::{Flaw, Located};
@@ -38,6 +40,7 @@ fn check_robot(robot: &Robot, bounds: &Bounds) -> Result<(), Located> {
     within("robot.torso_m", robot.torso_m, TORSO_RANGE[0], TORSO_RANGE[1])?;
     in_bounds("robot.base[0]", robot.base[0], "base_x", bounds.base_x)?;
     in_bounds("robot.base[1]", robot.base[1], "base_y", bounds.base_y)?;
+    within("robot.base[2]", robot.base[2], -PI, PI)?;
     let arms = [
         ("posture", &robot.posture, "joints", &robot.joints),
         ("other_posture", &robot.other_posture, "other_joints", &robot.other_joints),

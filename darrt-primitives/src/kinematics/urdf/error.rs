@@ -2,19 +2,24 @@
 
 use std::path::PathBuf;
 
+use darrt_geom::FileError;
+
 /// Why a robot description was refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum UrdfError {
-    /// The file could not be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Io {
+    /// The file was not read.
+    #[error(transparent)]
+    File(FileError),
+    /// The file was read, and its text refused.
+    #[error("{}: {source}", path.display())]
+    InFile {
         /// The file.
         path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
+        /// What is wrong with its text.
+        source: Box<UrdfError>,
     },
-    /// The text, file or a tag is too long.
+    /// The text or a tag is too long.
     #[error("{what} of {bytes} bytes is longer than the {bound} bytes accepted")]
     TooLarge {
         /// What is too long.

@@ -146,9 +146,14 @@ fn hostile_texts_are_refused_quickly() {
 }
 
 #[test]
-fn a_missing_file_is_named() {
-    let message = RobotDescription::from_file(Path::new("/nowhere/robot.urdf")).expect_err("no file").to_string();
+fn files_that_are_none_and_bad_texts_are_named() {
+    let refused = |path: &Path| RobotDescription::from_file(path).expect_err("no robot").to_string();
+    let message = refused(Path::new("/nowhere/robot.urdf"));
     assert!(message.contains("/nowhere/robot.urdf"), "{message}");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    assert!(refused(folder).ends_with("is not a regular file"));
+    let message = refused(&folder.join("Cargo.toml"));
+    assert!(message.contains("Cargo.toml: "), "{message}");
 }
 
 /// Random damage to a sound text: any answer but a panic. What is still accepted must work in every later step.

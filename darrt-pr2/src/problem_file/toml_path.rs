@@ -1,0 +1,88 @@
+//! Which key of a TOML text a place belongs to.
+
+use std::ops::Range;
+
+use toml::de::{DeTable, DeValue};
+
+/// The path of the innermost key or entry that contains the whole byte range `place`, such as
+/// `object[0].shape.box.size[1]`; indices count from 0.
+///
+/// `None` for a place outside all keys and for a text that is not TOML. The nesting of the text must be bounded.
+pub(super) fn path_at(text: &str, place: &Range<usize>) -> Option<String> {
+    let table = DeTable::parse(text).ok()?;
+    let mut search = Search { place, best: None };
+    search.table(table.get_ref(), "");
+    search.best.map(|(_, path)| path)
+}
+
+struct Search<'a> {
+    place: &'a Range<usize>,
+    /// Length and path of the shortest part that contains the place.
+    best: Option<(usize, String)>,
+}
+
+impl Search<'_> {
+    // The span of a table is only its header, so every part is looked at whether the one around it fits or not.
+    fn table(&mut self, table: &DeTable<'_>, path: &str) {
+        let separator = if path.is_empty() { "" } else { "." };
+        for (key, value) in table {
+            let path = format!("{path}{separator}{}", key.get_ref());
+            self.consider(&key.span(), &path);
+            self.consider(&value.span(), &path);
+            self.value(value.get_ref(), &path);
+        }
+    }
+
+    fn value(&mut self, value: &DeValue<'_>, path: &str) {
+        match value {
+            DeValue::Table(table) => self.table(table, path),
+            DeValue::Array(entries) => {
+                for (index, entry) in entries.iter().enumerate() {
+                    let path = format!("{path}[{index}]");
+                    self.consider(&entry.span(), &path);
+                    self.value(entry.get_ref(), &path);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn consider(&mut self, span: &Range<usize>, path: &str) {
+        let contains = span.start <= self.place.start && self.place.end <= span.end && !span.is_empty();
+        if contains && self.best.as_ref().is_none_or(|(length, _)| span.len() <= *length) {
+            self.best = Some((span.len(), path.to_owned()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str =
+        "name = \"x\"\n[robot]\nbase = [1, 22, 3]\n[[object]]\nat = 1\n[[object]]\nshape = { box = { size = 7 } }\n";
+
+    #[test]
+    fn places_know_their_key() {
+        for (part, path) in [
+            ("\"x\"", "name"),
+            ("base", "robot.base"),
+            ("22", "robot.base[1]"),
+            ("[1, 22", "robot.base"),
+            ("at", "object[0].at"),
+            ("7", "object[1].shape.box.size"),
+            ("box", "object[1].shape.box"),
+            ("[robot]", "robot"),
+        ] {
+            let start = TEXT.find(part).unwrap();
+            assert_eq!(path_at(TEXT, &(start..start + part.len())).as_deref(), Some(path), "{part}");
+        }
+    }
+
+    #[test]
+    fn places_beyond_the_keys_have_none() {
+        assert_eq!(path_at(TEXT, &(0..TEXT.len())), None);
+        assert_eq!(path_at("a = = 1", &(4..5)), None);
+        assert_eq!(path_at("", &(0..0)), None);
+    }
+}
