@@ -65,12 +65,38 @@ fn verified_picks_and_places_are_reproduced() {
         let world_from_plate = Isometry3::translation(x, y, bottom + 0.01);
         let grasp = plate().grasp(case.azimuth_deg.to_radians(), case.tilt_deg.to_radians(), false);
         let tool = grasp.world_from_tool(&world_from_plate);
+        // The verified hands stand in the plate's middle plane and close to its thickness; ours differ from them only
+        // along the opening, by as much as a tilted hand stands higher between its contacts.
         let [tx, ty, tz] = case.tool_position;
-        assert!((tool.translation.vector - Vector3::new(tx, ty, tz)).norm() < 1e-9);
+        let offset = tool.rotation.inverse() * (tool.translation.vector - Vector3::new(tx, ty, tz));
+        let above = if case.tilt_deg == 0.0 { 0.0 } else { -offset.y };
+        assert!((offset + Vector3::y() * above).norm() < 1e-9 && (0.0..0.01).contains(&above), "{offset}");
         let [a, b, c] = case.tool_rows;
         let expected = Matrix3::from_rows(&[a.into(), b.into(), c.into()]);
         let found = tool.rotation.to_rotation_matrix();
         assert!((found.matrix() - expected).norm() < 2e-6, "{found}");
+    }
+}
+
+#[test]
+fn the_pads_of_a_tilted_hand_touch_the_plate_and_do_not_enter_it() {
+    for tilt_deg in [-45.0, -20.0, 0.0, 10.0, 30.0, 45.0_f64] {
+        let grasp = plate().grasp(0.7, tilt_deg.to_radians(), false);
+        // How deep the pads, closed, reach into the plate; they go on behind the rim.
+        let mut touches = [f64::INFINITY; 2];
+        for (side, touch) in [1.0, -1.0].into_iter().zip(&mut touches) {
+            for step in 0..=2000 {
+                let along = 0.018 - 0.06 * f64::from(step) / 2000.0;
+                let on_pad = nalgebra::Point3::new(along, side * grasp.closed_gap_m / 2.0, 0.0);
+                let p = grasp.object_from_tool * on_pad;
+                if p.x.hypot(p.y) <= 0.14 {
+                    *touch = touch.min(p.z.abs() - 0.01);
+                }
+            }
+        }
+        assert!(touches.iter().all(|t| t.abs() < 1e-4), "{tilt_deg}: {touches:?}");
+        let free = grasp.open_gap_m - grasp.closed_gap_m;
+        assert!((free - 0.03).abs() < 1e-12);
     }
 }
 
