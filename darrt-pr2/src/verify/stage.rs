@@ -1,5 +1,8 @@
 //! All solids at their places, and which pairs may not touch.
 
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
 use nalgebra::{Isometry3, Point3};
 
 use super::robot::Robot;
@@ -45,9 +48,36 @@ struct Pair {
     b: usize,
     kind: PairKind,
     rule: Rule,
-    /// Their distance when last measured, plus twice what [`Stage::travelled_m`] was then.
-    reserve_m: f64,
 }
+
+/// When a pair must be looked at again.
+#[derive(Debug, Clone, Copy)]
+struct Due {
+    /// Distance of the pair when last measured, plus twice what [`Stage::travelled_m`] was then.
+    reserve_m: f64,
+    pair: usize,
+}
+
+impl Ord for Due {
+    /// The greatest is the first to be looked at.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.reserve_m.total_cmp(&self.reserve_m).then(other.pair.cmp(&self.pair))
+    }
+}
+
+impl PartialOrd for Due {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Due {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Due {}
 
 /// Two solids that touch and may not.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,8 +106,13 @@ pub(super) struct Stage {
     poses: Vec<Isometry3<f64>>,
     /// World centres of the balls around the solids.
     centres: Vec<Point3<f64>>,
-    has_moved: Vec<bool>,
     pairs: Vec<Pair>,
+    /// The pairs that may not touch, the most urgent first.
+    due: BinaryHeap<Due>,
+    /// The pairs of which one stands on the other: few.
+    standing: Vec<Due>,
+    /// Those that were looked at in this check.
+    measured: Vec<Due>,
     links: usize,
     lift_m: f64,
     /// Bound on how far any solid has moved since the beginning, metres.
@@ -101,7 +136,7 @@ impl Stage {
         let mut poses = vec![Isometry3::identity(); first_fixed];
         poses.extend(world.fixed.iter().map(|(_, pose)| *pose));
         let mut pairs = Vec::new();
-        let mut add = |a, b, kind| pairs.push(Pair { a, b, kind, rule: Rule::Apart, reserve_m: f64::NEG_INFINITY });
+        let mut add = |a, b, kind| pairs.push(Pair { a, b, kind, rule: Rule::Apart });
         for (i, solid) in robot.solids.iter().enumerate() {
             (0..objects).for_each(|o| add(i, links + o, PairKind::LinkObject { link: solid.link, object: o }));
             (first_fixed..solids.len()).for_each(|f| add(i, f, PairKind::Other));
@@ -114,7 +149,9 @@ impl Stage {
             (o + 1..objects).for_each(|other| add(links + o, links + other, PairKind::Other));
         }
         Self {
-            has_moved: vec![true; solids.len()],
+            due: BinaryHeap::new(),
+            standing: Vec::new(),
+            measured: Vec::new(),
             centres: solids.iter().zip(&poses).map(|(solid, pose)| solid.world_centre(pose)).collect(),
             solids,
             poses,
@@ -130,76 +167,97 @@ impl Stage {
 
     /// Decides anew how each pair is treated; the next check looks at all of them.
     pub(super) fn set_rules(&mut self, rule: impl Fn(PairKind) -> Rule) {
-        for pair in &mut self.pairs {
+        self.due.clear();
+        self.standing.clear();
+        for (index, pair) in self.pairs.iter_mut().enumerate() {
             pair.rule = rule(pair.kind);
-            pair.reserve_m = f64::NEG_INFINITY;
+            let due = Due { reserve_m: f64::NEG_INFINITY, pair: index };
+            match pair.rule {
+                Rule::Free => {}
+                Rule::Apart => self.due.push(due),
+                Rule::Standing => self.standing.push(due),
+            }
         }
-        self.has_moved.fill(true);
     }
 
-    /// Puts links and objects at their places, and remembers which of them that moved: none by more than `travel_m`.
+    /// Puts links and objects at their places; none moves by more than `travel_m`.
     pub(super) fn place(&mut self, robot: &Robot, links: &[Isometry3<f64>], objects: &[Isometry3<f64>], travel_m: f64) {
         self.travelled_m += travel_m;
         let of_links =
             robot.solids.iter().map(|s| links.get(s.link).map_or(s.link_from_solid, |l| l * s.link_from_solid));
         let all = of_links.chain(objects.iter().copied());
-        let places = self.poses.iter_mut().zip(&mut self.centres).zip(&mut self.has_moved).zip(&self.solids);
-        for ((((pose, centre), moved), solid), new) in places.zip(all) {
+        let places = self.poses.iter_mut().zip(&mut self.centres).zip(&self.solids);
+        for (((pose, centre), solid), new) in places.zip(all) {
             if *pose != new {
-                *moved = true;
                 *pose = new;
                 *centre = solid.world_centre(pose);
             }
         }
     }
 
-    /// Looks at every pair of which one has moved since the last call.
+    /// Looks at every pair that could touch, or be nearer than any other was, since it was last looked at.
     pub(super) fn check(&mut self, step: u32, time: f64) -> Result<(), Hit> {
         self.states += 1;
-        for pair in &mut self.pairs {
-            let (a, b) = (pair.a, pair.b);
-            if pair.rule == Rule::Free || !(self.has_moved[a] || self.has_moved[b]) {
-                continue;
-            }
-            // OPTIMIZATION: two solids that were far apart a moment ago still are; both may have moved.
-            let nearest = self.smallest.as_ref().map_or(f64::INFINITY, |s| s.distance_m);
-            let since_m = 2.0 * self.travelled_m;
-            let needed_m = if pair.rule == Rule::Apart { nearest } else { 0.0 };
-            if pair.reserve_m - since_m > needed_m + ROUNDING_M {
-                continue;
-            }
-            let (solid_a, solid_b) = (&self.solids[a], &self.solids[b]);
-            let mut lifted = self.poses[a];
-            let mut placed_a = Placed { solid: solid_a, world_from_solid: &self.poses[a], centre: self.centres[a] };
-            if pair.rule == Rule::Standing {
-                lifted.translation.z += self.lift_m;
-                placed_a.world_from_solid = &lifted;
-                placed_a.centre.z += self.lift_m;
-            }
-            let placed_b = Placed { solid: solid_b, world_from_solid: &self.poses[b], centre: self.centres[b] };
-            let bound = lower_bound(&placed_a, &placed_b);
-            let (pose_a, pose_b) = (placed_a.world_from_solid, placed_b.world_from_solid);
-            let is_counted = pair.rule == Rule::Apart && bound < nearest;
-            if bound > 0.0 && !is_counted {
-                pair.reserve_m = bound + since_m;
-                continue;
-            }
-            self.exact_tests += 1;
-            let names = || (solid_a.name().to_owned(), solid_b.name().to_owned());
-            // A pose that the oracle refuses counts as a collision.
-            let Ok(answer) = exact(solid_a, pose_a, solid_b, pose_b) else {
-                return Err(Hit { names: names(), place: Point3::from(pose_a.translation.vector) });
-            };
-            if answer.intersects {
-                return Err(Hit { names: names(), place: answer.place });
-            }
-            pair.reserve_m = answer.distance + since_m;
-            if is_counted && answer.distance < nearest {
-                self.smallest = Some(SmallestClearance { distance_m: answer.distance, bodies: names(), step, time });
+        let result = self.check_due(step, time);
+        self.due.extend(self.measured.drain(..));
+        result
+    }
+
+    fn check_due(&mut self, step: u32, time: f64) -> Result<(), Hit> {
+        // OPTIMIZATION: two solids that were far apart a moment ago still are; both may have moved.
+        let since_m = 2.0 * self.travelled_m;
+        for index in 0..self.standing.len() {
+            let Some(due) = self.standing.get(index).copied() else { continue };
+            if due.reserve_m - since_m <= ROUNDING_M {
+                let reserve_m = since_m + self.look(due.pair, step, time)?;
+                self.standing[index].reserve_m = reserve_m;
             }
         }
-        self.has_moved.fill(false);
+        while let Some(first) = self.due.peek().copied() {
+            let nearest = self.smallest.as_ref().map_or(f64::INFINITY, |s| s.distance_m);
+            if first.reserve_m - since_m > nearest + ROUNDING_M {
+                break;
+            }
+            self.due.pop();
+            let reserve_m = since_m + self.look(first.pair, step, time)?;
+            self.measured.push(Due { reserve_m, ..first });
+        }
         Ok(())
+    }
+
+    /// Looks at one pair: a lower bound of its distance that is above 0 and, if it may be the smallest so far, exact.
+    fn look(&mut self, index: usize, step: u32, time: f64) -> Result<f64, Hit> {
+        let nearest = self.smallest.as_ref().map_or(f64::INFINITY, |s| s.distance_m);
+        let pair = &self.pairs[index];
+        let (a, b) = (pair.a, pair.b);
+        let (solid_a, solid_b) = (&self.solids[a], &self.solids[b]);
+        let mut lifted = self.poses[a];
+        let mut placed_a = Placed { solid: solid_a, world_from_solid: &self.poses[a], centre: self.centres[a] };
+        if pair.rule == Rule::Standing {
+            lifted.translation.z += self.lift_m;
+            placed_a.world_from_solid = &lifted;
+            placed_a.centre.z += self.lift_m;
+        }
+        let placed_b = Placed { solid: solid_b, world_from_solid: &self.poses[b], centre: self.centres[b] };
+        let bound = lower_bound(&placed_a, &placed_b);
+        let (pose_a, pose_b) = (placed_a.world_from_solid, placed_b.world_from_solid);
+        let is_counted = pair.rule == Rule::Apart && bound < nearest;
+        if bound > 0.0 && !is_counted {
+            return Ok(bound);
+        }
+        self.exact_tests += 1;
+        let names = || (solid_a.name().to_owned(), solid_b.name().to_owned());
+        // A pose that the oracle refuses counts as a collision.
+        let Ok(answer) = exact(solid_a, pose_a, solid_b, pose_b) else {
+            return Err(Hit { names: names(), place: Point3::from(pose_a.translation.vector) });
+        };
+        if answer.intersects {
+            return Err(Hit { names: names(), place: answer.place });
+        }
+        if is_counted && answer.distance < nearest {
+            self.smallest = Some(SmallestClearance { distance_m: answer.distance, bodies: names(), step, time });
+        }
+        Ok(answer.distance)
     }
 
     /// The solid and the pose of an object.
