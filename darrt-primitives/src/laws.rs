@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | a [`Manipulator`](crate::manipulator::Manipulator) | [`check_manipulator`], [`check_reaches`] | [`manipulator`] |
 //! | a Jacobian | [`check_jacobian`], [`check_chain`] | [`jacobian`] |
-//! | instances on a [`Tabletop`](crate::tabletop::Tabletop) | [`check_tabletop`], [`check_tabletop_instance`] | [`tabletop`] |
+//! | instances on a [`Tabletop`](crate::tabletop::Tabletop) | [`check_tabletop`], [`check_tabletop_instance`], [`check_finger_contacts`] | [`tabletop`] |
 //!
 //! Each function takes concrete inputs and returns the first law that is broken, as a
 //! [`Broken`](darrt_core::laws::Broken) with the parameter, the two values and the call that shows it again. The
@@ -36,7 +36,7 @@ pub mod tabletop;
 
 pub use jacobian::{check_chain, check_jacobian};
 pub use manipulator::{ManipulatorClaims, ReachClaims, check_manipulator, check_reaches};
-pub use tabletop::{TabletopClaims, body_travel, check_tabletop, check_tabletop_instance};
+pub use tabletop::{TabletopClaims, body_travel, check_finger_contacts, check_tabletop, check_tabletop_instance};
 
 /// Every law of this crate.
 pub fn all() -> impl Iterator<Item = &'static str> {

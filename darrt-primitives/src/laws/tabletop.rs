@@ -11,10 +11,13 @@ use nalgebra::{Isometry3, Point3};
 use crate::manipulator::Manipulator;
 use crate::tabletop::{Tabletop, TabletopState};
 
+mod contacts;
 mod hand;
 mod held;
 mod modes;
 mod pushed;
+
+pub use contacts::check_finger_contacts;
 
 /// Held objects.
 pub const HELD_RIGID: &str = "tabletop.held-rigid: while an object is held, its pose in the tool frame is the grasp";
@@ -46,6 +49,8 @@ pub const STRAIGHT: &str =
 /// Retreat.
 pub const RETREAT: &str =
     "tabletop.retreat: the hand leaves what it stands at straight back along its own axis, and nothing else moves";
+/// Forgotten exemptions.
+pub const FINGERS: &str = "tabletop.fingers: the fingers may touch what they push, close on, hold and let go of";
 
 /// The laws of this file.
 pub const LAWS: &[&str] =

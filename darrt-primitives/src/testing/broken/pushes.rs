@@ -5,7 +5,10 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use super::Case;
 use super::bench::{Act, Scene, pose_mut, scene, shift};
-use crate::laws::tabletop::{CONTACT, RAY, SUPPORT, TOUCH};
+use crate::laws::check_finger_contacts;
+use crate::laws::tabletop::{CONTACT, FINGERS, RAY, SUPPORT, TOUCH};
+use crate::mode::Contacts;
+use crate::testing::scene_oracle::SceneOracle;
 use crate::testing::table::object;
 
 /// A push, where it starts and how far it goes.
@@ -77,5 +80,23 @@ pub(super) fn cases() -> Vec<Case> {
             shift(&mut scene.from, object(0), ahead);
             scene.warped(Box::new(move |_, _, state| shift(state, object(0), ahead))).check()
         }),
+        Case {
+            name: "forgets an exemption",
+            wrong: "pushes the tin, but does not allow the fingers to touch it",
+            law: FINGERS,
+            broken: || touches(|_| Contacts::default()),
+            honest: || touches(|contacts| contacts),
+        },
     ]
+}
+
+/// The push with other contacts, judged by the oracle. The tin is pressed a little into the fingers: to touch exactly is a
+/// matter of rounding.
+fn touches(change: fn(Contacts) -> Contacts) -> Result<(), Broken> {
+    let (mut scene, _, way) = push()?;
+    let into = way.normalize() * -0.001;
+    scene.instance.contacts = change(scene.instance.contacts);
+    shift(&mut scene.from, object(0), into);
+    let Scene { m, from, instance } = scene.warped(Box::new(move |_, _, state| shift(state, object(0), into)));
+    check_finger_contacts(&m, &SceneOracle::new(&[]), &[instance], &from, &[0.3, 0.6])
 }

@@ -1,0 +1,99 @@
+//! The eight primitives.
+
+use std::cell::Cell;
+
+use darrt_core::laws::primitive::Excuse;
+use darrt_core::laws::{MotionClaims, PrimitiveClaims, Tried, try_primitive};
+use darrt_core::primitive::Primitive;
+use darrt_core::testing::strategies::{config, looks, tasks_from};
+use darrt_pr2::arm_rigid_transfer::ArmRigidTransfer;
+use darrt_pr2::arm_transit::ArmTransit;
+use darrt_pr2::base_rigid_transfer::BaseRigidTransfer;
+use darrt_pr2::base_transit::BaseTransit;
+use darrt_pr2::pick::Pick;
+use darrt_pr2::place::Place;
+use darrt_pr2::push::Push;
+use darrt_pr2::straight_line_arm_transit::StraightLineArmTransit;
+use darrt_pr2::world::{World, WorldState};
+use darrt_primitives::laws::{TabletopClaims, body_travel, check_finger_contacts, check_tabletop};
+use darrt_primitives::testing::strategies::{any_mode, engaged, holding, resting};
+use proptest::prelude::*;
+
+use crate::support::{PROBLEMS, REGRESSIONS, problem};
+
+/// What a primitive starts from, most of the time.
+#[derive(Clone, Copy)]
+enum Starts {
+    Resting,
+    Holding,
+    Engaged,
+}
+
+/// All laws of one primitive from all kinds of states; it must succeed now and then, or nothing is shown.
+fn check(primitive: &dyn Primitive<World>, starts: Starts, cases: u32, excuse: Option<Excuse<'_, World>>) {
+    let succeeded = Cell::new(0);
+    for name in PROBLEMS {
+        let problem = problem(name);
+        let m = problem.domain();
+        let all = (0..5_u8, resting(m), holding(m), engaged(m), any_mode(m));
+        let starts = all.prop_map(move |(kind, resting, holding, engaged, any)| match (kind, starts) {
+            (4, _) => any,
+            (_, Starts::Resting) => resting,
+            (_, Starts::Holding) => holding,
+            (_, Starts::Engaged) => engaged,
+        });
+        proptest!(config(cases, REGRESSIONS), |((from, to, seed) in tasks_from(m, starts), ts in looks())| {
+            let motion = MotionClaims { travel: &body_travel, ..MotionClaims::default() };
+            let claims = PrimitiveClaims { ts: &ts, motion, max_instances: 8, excuse, ..PrimitiveClaims::default() };
+            if let Tried::Propagated(instances) = try_primitive(m, primitive, &from, &to, seed, &claims)? {
+                succeeded.set(succeeded.get() + 1);
+                check_tabletop(m, &instances, &from, &ts, &TabletopClaims::default())?;
+                check_finger_contacts(m, problem.validity(), &instances, &from, &ts)?;
+            }
+        });
+    }
+    assert!(succeeded.get() >= 3, "{} succeeded {} times only", primitive.name(), succeeded.get());
+}
+
+#[test]
+fn arm_transit() {
+    check(&ArmTransit, Starts::Resting, 48, None);
+}
+
+#[test]
+fn straight_line_arm_transit() {
+    check(&StraightLineArmTransit, Starts::Engaged, 24, None);
+}
+
+#[test]
+fn arm_rigid_transfer() {
+    check(&ArmRigidTransfer, Starts::Holding, 32, None);
+}
+
+#[test]
+fn base_transit() {
+    check(&BaseTransit, Starts::Resting, 48, None);
+}
+
+#[test]
+fn base_rigid_transfer() {
+    check(&BaseRigidTransfer, Starts::Holding, 48, None);
+}
+
+/// What is grasped is lifted, which may well be away from its target.
+#[test]
+fn pick() {
+    let lifted: Excuse<'_, World> =
+        &|_, from: &WorldState, _: &_, end: &WorldState| from.mode.held().is_none() && end.mode.held().is_some();
+    check(&Pick, Starts::Resting, 48, Some(lifted));
+}
+
+#[test]
+fn place() {
+    check(&Place, Starts::Holding, 48, None);
+}
+
+#[test]
+fn push() {
+    check(&Push, Starts::Resting, 48, None);
+}
