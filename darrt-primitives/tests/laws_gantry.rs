@@ -10,6 +10,7 @@ use darrt_core::laws::{SpaceClaims, check_component_space, check_domain, check_m
 use darrt_core::primitive::Infeasible;
 use darrt_core::primitive::Instances;
 use darrt_core::random::{Purpose, stream};
+use darrt_core::space::ComponentSpace;
 use darrt_core::state::ObjectId;
 use darrt_core::testing::strategies::{config, configs, looks, parameters, seeds};
 use darrt_primitives::action::{Chain, pick::pick, place::place, push::push, retreat::retreat, transfer::transfer};
@@ -135,4 +136,17 @@ fn retreats_keep_their_laws() {
         retreat(&m, &mut chain)?;
         chain.finish()
     });
+}
+
+/// Found by the laws: the turns of a round object about its own axis do not count, but the shortest rotation between two
+/// poses leads that axis around a detour, so that the way was longer than the distance.
+#[test]
+fn the_axis_of_a_round_object_takes_the_shortest_way() {
+    let m = honest_table().unwrap();
+    let tin = &m.objects()[0];
+    let leaning = |axis: Vector3<f64>| Isometry3::new(Vector3::new(0.0, 0.0, 0.8), axis);
+    let (a, b) = (leaning(Vector3::zeros()), leaning(Vector3::new(0.8, 0.2, 2.5)));
+    let half = tin.interpolate(&a, &b, 0.5);
+    let (whole, first, second) = (tin.distance(&a, &b), tin.distance(&a, &half), tin.distance(&half, &b));
+    assert!((first - 0.5 * whole).abs() < 1e-9 && (second - 0.5 * whole).abs() < 1e-9, "{first} {second} {whole}");
 }

@@ -6,14 +6,12 @@ use darrt_pr2::model::{Pr2Model, WholeBody};
 use darrt_pr2::robot::Pr2;
 use darrt_primitives::arm_space::ArmSpace;
 use darrt_primitives::kinematics::{Chain, KinematicTree};
-use darrt_primitives::laws::{
-    ManipulatorClaims, ReachClaims, check_chain, check_manipulator, check_reaches,
-};
+use darrt_primitives::laws::{ManipulatorClaims, ReachClaims, check_chain, check_manipulator, check_reaches};
 use darrt_primitives::manipulator::Manipulator;
 use nalgebra::{Isometry3, Point3, Vector3};
 use proptest::prelude::*;
 
-use crate::support::REGRESSIONS;
+const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_robot.txt");
 
 fn robot(side: Side, limits: LimitKind) -> Pr2 {
     let rest = WholeBody { torso_m: 0.2, ..WholeBody::at_rest() };
@@ -27,7 +25,7 @@ fn space(robot: &Pr2) -> ArmSpace<ArmConfiguration> {
 fn check(side: Side, limits: LimitKind) {
     let robot = robot(side, limits);
     let space = space(&robot);
-    let claims = ManipulatorClaims { ..ManipulatorClaims::default() };
+    let claims = ManipulatorClaims::default();
     proptest!(config(24, REGRESSIONS), |(a in configs(&space), b in configs(&space), seed in seeds(), gap in 0.0..0.09)| {
         check_manipulator(&robot, [&a, &b], [gap, 0.09 - gap], seed, &claims)?;
     });

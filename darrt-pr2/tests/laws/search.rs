@@ -14,7 +14,9 @@ use darrt_pr2::world::World;
 use darrt_primitives::testing::strategies::{any_mode, resting};
 use proptest::prelude::*;
 
-use crate::support::{PROBLEMS, REGRESSIONS, file, problem};
+use crate::support::{PROBLEMS, file, problem};
+
+const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_search.txt");
 
 #[test]
 fn distances_keep_their_laws() {

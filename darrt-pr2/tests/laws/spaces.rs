@@ -7,7 +7,9 @@ use darrt_primitives::arm_space::ArmSpace;
 use darrt_primitives::testing::strategies::any_mode;
 use proptest::prelude::*;
 
-use crate::support::{PROBLEMS, REGRESSIONS, problem};
+use crate::support::{PROBLEMS, problem};
+
+const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_spaces.txt");
 
 #[test]
 fn base_and_arm_keep_the_laws_of_a_space() {

@@ -10,9 +10,6 @@ use darrt_primitives::mode::Contacts;
 use darrt_primitives::testing::strategies::any_mode;
 use proptest::prelude::*;
 
-/// Where failing cases are kept.
-pub(crate) const REGRESSIONS: Option<&str> = Some("tests/regressions/laws.txt");
-
 /// One problem with a plate, one with a bowl, one with everything.
 pub(crate) const PROBLEMS: [&str; 3] = ["plate1", "bowl", "plate3"];
 

@@ -13,7 +13,9 @@ use darrt_primitives::testing::scene_oracle::SceneOracle;
 use darrt_primitives::testing::strategies::any_mode;
 use proptest::prelude::*;
 
-use crate::support::{PROBLEMS, REGRESSIONS, file, obstacles, problem, valid_states};
+use crate::support::{PROBLEMS, file, obstacles, problem, valid_states};
+
+const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_validity.txt");
 
 /// Motions that the primitives really propose, from valid states.
 #[test]
@@ -23,7 +25,7 @@ fn the_fast_check_keeps_its_laws_and_is_never_laxer_than_the_oracle() {
         let problem = problem(name);
         let oracle = SceneOracle::new(&obstacles(name));
         let (m, validity) = (problem.domain(), problem.validity());
-        proptest!(config(24, REGRESSIONS), |((from, to, seed) in tasks_from(m, valid_states(&problem)))| {
+        proptest!(config(48, REGRESSIONS), |((from, to, seed) in tasks_from(m, valid_states(&problem)))| {
             for primitive in problem.primitives() {
                 if !primitive.useful(m, &from, &to) {
                     continue;
@@ -47,7 +49,9 @@ fn the_fast_check_keeps_its_laws_and_is_never_laxer_than_the_oracle() {
     assert!(blocked.get() >= 5 && tried.get() > blocked.get(), "{} of {}", blocked.get(), tried.get());
 }
 
-const CLAIMS: ValidityClaims = ValidityClaims { tight_m: 0.02, same_names: false, between: 8 };
+/// A step of the conservative advancement that ends in a collision is not made, and a step is up to 0.2 m long (the cap of
+/// the distances): so early may the free prefix end.
+const CLAIMS: ValidityClaims = ValidityClaims { tight_m: 0.21, same_names: false, between: 8 };
 
 /// Whatever the oracle rejects, the fast check rejects, in any state.
 #[test]
@@ -55,7 +59,7 @@ fn what_the_oracle_rejects_is_rejected() {
     for name in PROBLEMS {
         let problem = problem(name);
         let (m, oracle) = (problem.domain(), SceneOracle::new(&obstacles(name)));
-        proptest!(config(48, REGRESSIONS), |(state in any_mode(m))| {
+        proptest!(config(96, REGRESSIONS), |(state in any_mode(m))| {
             check_enlarged(m, &oracle, problem.validity(), &state, &Contacts::default())?;
         });
     }
@@ -65,8 +69,8 @@ fn what_the_oracle_rejects_is_rejected() {
 fn with_another_obstacle(name: &str) -> ProblemFile {
     let mut file = file(name);
     let mut another = file.obstacles.first().cloned().unwrap();
-    another.name = "another".to_owned();
-    another.at = vec![0.0, 0.0, 1.7];
+    "another".clone_into(&mut another.name);
+    another.at = vec![1.5, 1.5, 1.0];
     file.obstacles.push(another);
     file
 }
@@ -76,11 +80,11 @@ fn more_obstacles_forbid_more() {
     let (with, without) = (prepare(&with_another_obstacle("plate1")).unwrap().problem, problem("plate1"));
     let differ = Cell::new(0);
     let m = without.domain();
-    proptest!(config(128, REGRESSIONS), |(state in any_mode(m))| {
+    proptest!(config(192, REGRESSIONS), |(state in valid_states(&without))| {
         let none = Contacts::default();
         check_enlarged(m, without.validity(), with.validity(), &state, &none)?;
         let is_valid = |p: &darrt_core::problem::Problem<_>| p.validity().check(m, &state, &none).is_ok();
         differ.set(differ.get() + u32::from(is_valid(&without) && !is_valid(&with)));
     });
-    let _ = differ;
+    assert!(differ.get() >= 1, "the obstacle is in nobody's way");
 }
