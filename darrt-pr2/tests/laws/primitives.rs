@@ -20,7 +20,8 @@ use darrt_pr2::world::{World, WorldState};
 use darrt_primitives::laws::{TabletopClaims, body_travel, check_finger_contacts, check_tabletop};
 use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::mode::Held;
-use darrt_primitives::testing::strategies::{any_mode, engaged, holding, resting};
+use darrt_primitives::testing::strategies::{any_mode, engaged, grasping, holding, resting};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 use crate::support::{PROBLEMS, problem};
@@ -88,6 +89,39 @@ fn base_transit() {
 #[test]
 fn base_rigid_transfer() {
     check(&BaseRigidTransfer, Starts::Holding, 96, None);
+}
+
+/// Targets that the base alone can reach: what is held upright, moved in the plane and turned about the vertical.
+#[test]
+fn base_rigid_transfer_in_the_plane() {
+    let succeeded = Cell::new(0);
+    for name in PROBLEMS {
+        let problem = problem(name);
+        let m = problem.domain();
+        let shifts = (-3.0..3.0, -3.0..3.0, -3.0..3.0_f64);
+        proptest!(config(32, REGRESSIONS), |(from in grasping(m), (x, y, yaw) in shifts, seed in 0..1000_u64, ts in looks())| {
+            let id = from.mode.held().unwrap().object;
+            let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
+            let target = &from.objects[id.index()];
+            let target = Isometry3::from_parts(
+                Translation3::new(target.translation.x + x, target.translation.y + y, target.translation.z),
+                turn * target.rotation,
+            );
+            // Round objects may be turned at will, and the base with them: it stays in the room wherever it comes to
+            // stand around a place in the middle.
+            prop_assume!(target.translation.x.abs() < 1.0 && target.translation.y.abs() < 1.0);
+            let to = PartialState::anywhere(m).with_object(id, target);
+            let motion = MotionClaims { travel: &body_travel, ..MotionClaims::default() };
+            let claims = PrimitiveClaims { ts: &ts, motion, max_instances: 1, ..PrimitiveClaims::default() };
+            if let Tried::Propagated(instances) = try_primitive(m, &BaseRigidTransfer, &from, &to, seed, &claims)? {
+                succeeded.set(succeeded.get() + 1);
+                check_tabletop(m, &instances, &from, &ts, &CLAIMS)?;
+                let end = instances[0].at(m, 1.0, &from);
+                prop_assert!(to.is_object_met(m, &end, id), "{:?} instead of {target:?}", end.objects);
+            }
+        });
+    }
+    assert!(succeeded.get() >= 3, "{}", succeeded.get());
 }
 
 /// What is grasped is lifted, which may well be away from its target.

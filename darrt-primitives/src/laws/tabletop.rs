@@ -51,6 +51,8 @@ pub const RETREAT: &str =
     "tabletop.retreat: the hand leaves what it stands at straight back along its own axis, and nothing else moves";
 /// Forgotten exemptions.
 pub const FINGERS: &str = "tabletop.fingers: the fingers may touch what they push, close on, hold and let go of";
+/// Limits.
+pub const INSIDE: &str = "tabletop.inside: base and arm stay within their limits all the way, if they begin there";
 
 /// The laws of this file.
 pub const LAWS: &[&str] =
@@ -113,6 +115,7 @@ pub fn check_tabletop_instance<M: Manipulator>(
     let trial = Trial::new(m, instance, from, ts, claims);
     let check = || {
         trial.modes()?;
+        trial.inside()?;
         trial.exemptions()?;
         trial.held()?;
         trial.pushed()?;

@@ -37,7 +37,19 @@ pub fn engaged<M: Manipulator>(m: &Tabletop<M>) -> impl Strategy<Value = Tableto
     (resting(m), any::<u64>()).prop_filter_map("an object that the hand reaches", makes)
 }
 
-/// All three kinds.
+/// The hand has just closed on a resting object: it is held upright, where it stands.
+pub fn grasping<M: Manipulator>(m: &Tabletop<M>) -> impl Strategy<Value = TabletopState<M>> + Clone + '_ {
+    let closes = move |state: TabletopState<M>| {
+        let object = state.mode.engaged()?;
+        let tool = m.manipulator().world_from_tool(&state.robot);
+        let held = Held { object, tool_from_object: tool.inverse() * state.object(object)? };
+        let mode = state.mode.attached(held, 0.5 * state.mode.gap_m())?;
+        Some(State { mode, ..state })
+    };
+    engaged(m).prop_filter_map("an object that can be held", closes)
+}
+
+/// At rest, with something in the hand, or beside something.
 pub fn any_mode<M: Manipulator>(m: &Tabletop<M>) -> impl Strategy<Value = TabletopState<M>> + Clone + '_ {
     let (resting, holding, engaged) = (resting(m), holding(m), engaged(m));
     // A union of three types: chosen by number, so that a failing case shrinks towards rest.

@@ -1,13 +1,29 @@
-//! Straight lines of the empty hand.
+//! Limits of the robot, and straight lines of its empty hand.
 
+use darrt_core::domain::Domain;
 use darrt_core::laws::{Broken, at_most, ensure};
+use darrt_core::space::ComponentSpace;
 use nalgebra::Vector3;
 
-use super::{RETREAT, STRAIGHT, Trial};
+use super::{INSIDE, RETREAT, STRAIGHT, Trial};
 use crate::action::label;
 use crate::manipulator::Manipulator;
 
 impl<M: Manipulator> Trial<'_, M> {
+    pub(super) fn inside(&self) -> Result<(), Broken> {
+        let space = self.m.robot();
+        if !space.contains(&self.from.robot) {
+            return Ok(());
+        }
+        let looks = self.looks.iter().map(|look| (look.t, &look.state));
+        for (t, state) in looks.chain([(1.0, &self.end)]) {
+            let text = || format!("{:?}", state.robot);
+            ensure(INSIDE, space.contains(&state.robot), text, "a configuration within the limits")
+                .map_err(|broken| broken.at(t))?;
+        }
+        Ok(())
+    }
+
     pub(super) fn hand(&self) -> Result<(), Broken> {
         if self.instance.label == label::STRAIGHT_LINE_ARM_TRANSIT {
             self.straight()?;

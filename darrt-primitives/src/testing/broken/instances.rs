@@ -7,7 +7,7 @@ use nalgebra::{Isometry3, Translation3, Vector3};
 use super::bench::{Act, Change, object_of, pose_mut, regrip, scene, shift};
 use super::{Case, unusable};
 use crate::action::label;
-use crate::laws::tabletop::{ATTACH, EXEMPT, HELD_RIGID, MODES, PICK_YAW, RELEASE, RETREAT, STILL, STRAIGHT};
+use crate::laws::tabletop::{ATTACH, EXEMPT, HELD_RIGID, INSIDE, MODES, PICK_YAW, RELEASE, RETREAT, STILL, STRAIGHT};
 use crate::mode::{Contacts, Held, SurfaceId, TouchReason};
 use crate::testing::table::object;
 
@@ -139,12 +139,26 @@ fn modes() -> Vec<Case> {
 }
 
 fn hands() -> Vec<Case> {
-    let case =
-        |name, wrong, law, broken| Case { name, wrong, law, broken, honest: || honest(&[Act::Approach, Act::Retreat]) };
+    let case = |name, wrong, law, broken| Case {
+        name,
+        wrong,
+        law,
+        broken,
+        honest: || honest(&[Act::Transit, Act::Approach, Act::Retreat]),
+    };
     vec![
         case("straight in joint space", "goes from end to end in joint space: the hand swings out", STRAIGHT, || {
             let swing = |t: f64| 0.1 * (std::f64::consts::PI * t).sin();
             warped(Act::Approach, Box::new(move |_, t, state| state.robot.arm[4] += swing(t)))
+        }),
+        case(
+            "drives out of the room",
+            "the base goes where the object must go, whatever its bounds say",
+            INSIDE,
+            || warped(Act::Transit, Box::new(|_, t, state| state.robot.base[1] += 4.0 * t)),
+        ),
+        case("bends too far", "the last way point comes from an inverse that knows no limits", INSIDE, || {
+            warped(Act::Approach, Box::new(|_, t, state| state.robot.arm[5] += if t >= 1.0 { 2.0 } else { 0.0 }))
         }),
         case("leaves sideways", "retreats along an axis of the base, not of the hand", RETREAT, || {
             let mut scene = scene(Act::Retreat)?;
