@@ -41,6 +41,12 @@ fn the_left_arm_keeps_the_laws_of_a_robot() {
     check(Side::Left, LimitKind::Soft);
 }
 
+/// With the mechanical limits the elbow and the wrist can be stretched, where the closed form is singular.
+#[test]
+fn the_right_arm_keeps_the_laws_up_to_its_hard_limits() {
+    check(Side::Right, LimitKind::Hard);
+}
+
 #[test]
 fn both_arms_find_what_they_reach() {
     for side in Side::BOTH {
