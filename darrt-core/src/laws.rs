@@ -182,13 +182,19 @@ fn identical<T: PartialEq + Debug>(law: &'static str, found: &T, against: &T) ->
     if found == against && left == right { Ok(()) } else { Err(Broken::new(law, left, right)) }
 }
 
-/// Equal by `==`; a value that is not equal to itself (NaN) fails.
-fn equal<T: PartialEq + Debug>(law: &'static str, found: &T, against: &T) -> Result<(), Broken> {
+/// Equal by `==`; a value that is not equal to itself (NaN) fails. For laws of your own.
+///
+/// # Errors
+/// [`Broken`] with both values.
+pub fn equal<T: PartialEq + Debug>(law: &'static str, found: &T, against: &T) -> Result<(), Broken> {
     if found == against { Ok(()) } else { Err(Broken::new(law, format!("{found:?}"), format!("{against:?}"))) }
 }
 
-/// `found <= bound + slack`; NaN fails.
-fn at_most(law: &'static str, found: f64, bound: f64, slack: f64) -> Result<(), Broken> {
+/// `found <= bound + slack`; NaN fails. For laws of your own.
+///
+/// # Errors
+/// [`Broken`] with both numbers and the slack.
+pub fn at_most(law: &'static str, found: f64, bound: f64, slack: f64) -> Result<(), Broken> {
     if found <= bound + slack {
         Ok(())
     } else {
@@ -196,8 +202,11 @@ fn at_most(law: &'static str, found: f64, bound: f64, slack: f64) -> Result<(), 
     }
 }
 
-/// Finite and not negative.
-fn measure(law: &'static str, found: f64) -> Result<(), Broken> {
+/// Finite and not negative. For laws of your own.
+///
+/// # Errors
+/// [`Broken`] with the number.
+pub fn measure(law: &'static str, found: f64) -> Result<(), Broken> {
     if found.is_finite() && found >= 0.0 {
         Ok(())
     } else {
@@ -205,8 +214,16 @@ fn measure(law: &'static str, found: f64) -> Result<(), Broken> {
     }
 }
 
-/// `holds`, or what was found and what was asked for.
-fn ensure(law: &'static str, holds: bool, found: impl FnOnce() -> String, against: &'static str) -> Result<(), Broken> {
+/// `holds`, or what was found and what was asked for. For laws of your own.
+///
+/// # Errors
+/// [`Broken`] with both texts.
+pub fn ensure(
+    law: &'static str,
+    holds: bool,
+    found: impl FnOnce() -> String,
+    against: &'static str,
+) -> Result<(), Broken> {
     if holds { Ok(()) } else { Err(Broken::new(law, found(), against)) }
 }
 

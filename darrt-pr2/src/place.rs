@@ -19,7 +19,7 @@ impl Primitive<World> for Place {
     }
 
     fn useful(&self, m: &World, from: &WorldState, to: &PartialState<World>) -> bool {
-        held_target_on_surface(m, from, to).is_some() || asks_for_empty_hand(m, from, to)
+        !to.is_met(m, from) && (held_target_on_surface(m, from, to).is_some() || asks_for_empty_hand(m, from, to))
     }
 
     fn propagate(

@@ -56,7 +56,7 @@ pub struct ObjectGoal {
 }
 
 /// How far an object that should be upright may lean, radians.
-const UPRIGHT_TOLERANCE_RAD: f64 = 0.01;
+pub const UPRIGHT_TOLERANCE_RAD: f64 = 0.01;
 
 impl ObjectGoal {
     /// Is this goal met?

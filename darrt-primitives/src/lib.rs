@@ -11,6 +11,7 @@
 //! | who may touch whom, and what is too near? | [`surroundings`] |
 //! | what is in the way, and is there a way around? | [`validity`], [`detour`] |
 //! | what is asked for, and what is a goal? | [`wish`], [`goal`] |
+//! | is my robot right? | [`laws`], and `testing` (feature `testing`) |
 //!
 //! Nothing here names a robot.
 
@@ -23,11 +24,14 @@ pub mod error;
 pub mod goal;
 pub mod grasp;
 pub mod kinematics;
+pub mod laws;
 pub mod manipulator;
 pub mod mode;
 pub mod object_space;
 pub mod push;
 pub mod surroundings;
 pub mod tabletop;
+#[cfg(feature = "testing")]
+pub mod testing;
 pub mod validity;
 pub mod wish;

@@ -74,6 +74,8 @@ pub trait Hand: Send + Sync {
 /// A mobile manipulator.
 ///
 /// # Laws
+/// Run by [`check_manipulator`](crate::laws::check_manipulator) and [`check_reaches`](crate::laws::check_reaches); all
+/// of them are in [`laws::manipulator`](crate::laws::manipulator).
 /// - `world_from_tool` of every configuration returned by `inverse` or `inverse_near` is the pose asked for (1e-9), and
 ///   its joints lie within [`Manipulator::limits`].
 /// - No point of the robot moves farther than [`Manipulator::travel_m`] while base and arm move on the straight line

@@ -111,6 +111,15 @@ fn angle_between_axes(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
     2.0 * (0.5 * (a - b).norm()).min(1.0).asin()
 }
 
+/// The rotation at `t` on the way from `a` to `b` of a round object: its own axis takes the shortest way, at even speed,
+/// while it spins evenly about it. The shortest rotation would take the axis around a detour.
+fn turned_between(a: &Isometry3<f64>, b: &Isometry3<f64>, t: f64) -> UnitQuaternion<f64> {
+    let half_turn = || UnitQuaternion::from_axis_angle(&(a.rotation * Vector3::x_axis()), std::f64::consts::PI);
+    let swing = UnitQuaternion::rotation_between(&own_axis(a), &own_axis(b)).unwrap_or_else(half_turn);
+    let spin = (swing * a.rotation).inverse() * b.rotation;
+    swing.powf(t) * a.rotation * spin.powf(t)
+}
+
 impl ComponentSpace for ObjectSpace {
     type Config = Isometry3<f64>;
 
@@ -135,7 +144,12 @@ impl ComponentSpace for ObjectSpace {
     }
 
     fn interpolate(&self, a: &Isometry3<f64>, b: &Isometry3<f64>, t: f64) -> Isometry3<f64> {
-        self.poses.interpolate(a, b, t)
+        let pose = self.poses.interpolate(a, b, t);
+        if self.is_round && 0.0 < t && t < 1.0 {
+            Isometry3::from_parts(pose.translation, turned_between(a, b, t))
+        } else {
+            pose
+        }
     }
 
     fn sample(&self, rng: &mut dyn Rng) -> Isometry3<f64> {

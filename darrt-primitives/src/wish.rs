@@ -4,12 +4,14 @@ use darrt_core::domain::Domain;
 use darrt_core::partial::PartialState;
 use darrt_core::space::GroupSet;
 use darrt_core::state::ObjectId;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Vector3};
 use rand::{Rng, RngExt};
 
 use crate::action::place::ON_SURFACE_M;
 use crate::arm_space::{ARM, BASE};
+use crate::goal::UPRIGHT_TOLERANCE_RAD;
 use crate::manipulator::Manipulator;
+use crate::mode::SurfaceId;
 use crate::object_space::OBJECT_TOLERANCE_M;
 use crate::tabletop::{Tabletop, TabletopState};
 
@@ -77,7 +79,7 @@ pub fn held_target_in_air<'a, M: Manipulator>(
 ) -> Option<&'a Isometry3<f64>> {
     let held = from.mode.held()?.object;
     let target = to.object(held)?;
-    let in_air = m.surface_under(held, target, ON_SURFACE_M).is_none();
+    let in_air = surface_of_target(m, held, target).is_none();
     (in_air && !to.is_object_met(m, from, held)).then_some(target)
 }
 
@@ -89,7 +91,15 @@ pub fn held_target_on_surface<'a, M: Manipulator>(
 ) -> Option<&'a Isometry3<f64>> {
     let held = from.mode.held()?.object;
     let target = to.object(held)?;
-    m.surface_under(held, target, ON_SURFACE_M).map(|_| target)
+    surface_of_target(m, held, target).map(|_| target)
+}
+
+/// The surface on which an object at `target` is meant to stand. What leans does not stand, however near the surface is:
+/// it could only be set down upright, away from its target.
+fn surface_of_target<M: Manipulator>(m: &Tabletop<M>, object: ObjectId, target: &Isometry3<f64>) -> Option<SurfaceId> {
+    let up = target.rotation * Vector3::z();
+    let leans = up.xy().norm() > UPRIGHT_TOLERANCE_RAD || up.z < 0.0;
+    if leans { None } else { m.surface_under(object, target, ON_SURFACE_M) }
 }
 
 /// Is something held that the target does not name, while another object has to be moved? The hand must be emptied.

@@ -1,0 +1,217 @@
+//! Laws of [`Manipulator`].
+
+use darrt_core::laws::Broken;
+use darrt_core::random::{Purpose, Stream, stream};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+
+use crate::arm_space::ArmSpace;
+use crate::manipulator::{Configuration, Manipulator};
+
+mod description;
+mod inverse;
+mod line;
+mod links;
+mod reaches;
+mod travel;
+
+pub use reaches::{ReachClaims, check_reaches};
+
+/// Numbers of things.
+pub const COUNTS: &str = "manipulator.counts: there is one limit and one positive weight for every joint";
+/// Limits.
+pub const LIMITS: &str = "manipulator.limits: a limit is a closed interval of two finite ends, or has none at all";
+/// Links.
+pub const LINKS: &str = "manipulator.links: links have names of their own, and pairs name two different links";
+/// The gripper.
+pub const HAND: &str = "manipulator.hand: the facts about the gripper are finite, and its widest gap is positive";
+/// Rigid poses.
+pub const RIGID: &str = "manipulator.rigid: every pose is finite, and its rotation is a unit quaternion";
+/// The base's frame.
+pub const BASE_FRAME: &str =
+    "manipulator.base-frame: when only the base moves, tool and links move with it as one rigid body";
+/// Base links.
+pub const BASE_LINKS: &str = "manipulator.base-links: links of the base do not move with the arm or the fingers";
+/// Finger links.
+pub const FINGERS_FOLLOW: &str = "manipulator.fingers-follow: for a constant gap the fingers are rigid to the tool";
+/// The gap.
+pub const GAP: &str = "manipulator.gap: opening the hand moves the fingers and nothing else";
+/// Pure.
+pub const PURE: &str =
+    "manipulator.pure: the same question has the same answer, bit for bit, whatever was asked in between";
+/// Seeded.
+pub const SEEDED: &str = "manipulator.seeded: the same generator gives the same configuration and the same base";
+/// Pose of the inverse.
+pub const INVERSE_POSE: &str =
+    "manipulator.inverse-pose: forward of what inverse or inverse_near returns is the pose asked for";
+/// Limits of the inverse.
+pub const INVERSE_LIMITS: &str = "manipulator.inverse-limits: what inverse or inverse_near returns lies within the limits, continuous joints in (-pi, pi]";
+/// Near itself.
+pub const NEAR_SELF: &str =
+    "manipulator.near-self: near a configuration, the inverse of its own pose is that configuration";
+/// Necessary condition.
+pub const MAY_REACH: &str =
+    "manipulator.may-reach: may_reach is true wherever a configuration within the limits reaches";
+/// Continuity.
+pub const LINE_STEP: &str =
+    "manipulator.line-step: on a line followed in small steps, every step of every joint is small";
+/// Between the steps.
+pub const LINE_BOW: &str = "manipulator.line-bow: half-way between two configurations of a line, joints straight, the hand is still near the line";
+/// Travel is a measure.
+pub const TRAVEL_MEASURE: &str = "manipulator.travel-measure: travel_m is finite, 0 from a configuration to itself, the same backwards, and not less for a larger held object";
+/// Travel is a bound.
+pub const TRAVEL: &str = "manipulator.travel: no point of the robot travels farther than travel_m says";
+/// Travel of the held object.
+pub const TRAVEL_HELD: &str =
+    "manipulator.travel-held: no point within the held reach of the tool travels farther than travel_m says";
+/// Base.
+pub const BASE_FOR: &str = "manipulator.base-for: base_for draws a finite place and a yaw in [-pi, pi]";
+/// Inverse is of use.
+pub const INVERSE_FINDS: &str =
+    "manipulator.inverse-finds: for enough of the poses that can be reached, inverse finds a configuration";
+/// Bases are of use.
+pub const BASE_FINDS: &str = "manipulator.base-finds: from enough of the bases that base_for draws, may_reach is true";
+
+/// The laws of this file.
+pub const LAWS: &[&str] = &[
+    COUNTS,
+    LIMITS,
+    LINKS,
+    HAND,
+    RIGID,
+    BASE_FRAME,
+    BASE_LINKS,
+    FINGERS_FOLLOW,
+    GAP,
+    PURE,
+    SEEDED,
+    INVERSE_POSE,
+    INVERSE_LIMITS,
+    NEAR_SELF,
+    MAY_REACH,
+    LINE_STEP,
+    LINE_BOW,
+    TRAVEL_MEASURE,
+    TRAVEL,
+    TRAVEL_HELD,
+    BASE_FOR,
+    INVERSE_FINDS,
+    BASE_FINDS,
+];
+
+/// How exactly a robot answers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ManipulatorClaims {
+    /// How far two poses that should be one may be apart, metres and radians.
+    pub pose: f64,
+    /// How far `inverse_near` may end from where it began when nothing has to move, radians or metres per joint.
+    pub near_self: f64,
+    /// Length of the lines that are followed, metres.
+    pub line_m: f64,
+    /// Length of one step, metres.
+    pub step_m: f64,
+    /// No joint moves farther than this in one step, radians or metres.
+    pub joint_step: f64,
+    /// How far the hand may be off the line half-way between two steps, metres.
+    pub bow_m: f64,
+    /// How far held objects reach beyond the tool, metres.
+    pub held_reach_m: [f64; 2],
+}
+
+impl Default for ManipulatorClaims {
+    fn default() -> Self {
+        Self {
+            pose: 1e-9,
+            near_self: 1e-6,
+            line_m: 0.16,
+            step_m: 0.02,
+            joint_step: 0.3,
+            bow_m: 0.01,
+            held_reach_m: [0.12, 0.3],
+        }
+    }
+}
+
+/// All laws of a robot, for two configurations within its limits and two openings of the hand (metres).
+///
+/// # Errors
+/// The first law that is [`Broken`], with the link, joint or function at fault.
+pub fn check_manipulator<M: Manipulator>(
+    robot: &M,
+    [a, b]: [&Configuration<M::Joints>; 2],
+    gaps_m: [f64; 2],
+    seed: u64,
+    claims: &ManipulatorClaims,
+) -> Result<(), Broken> {
+    let check = || {
+        description::check(robot)?;
+        let trial = Trial { robot, space: space_of(robot)?, a, b, gaps_m, seed, claims };
+        trial.links()?;
+        trial.inverse()?;
+        trial.line()?;
+        trial.travel()?;
+        // Once more, after all the other questions.
+        trial.purity()
+    };
+    check().map_err(|broken| {
+        broken.replayed_by(|| format!("check_manipulator(&robot, [&{a:?}, &{b:?}], {gaps_m:?}, {seed}, &{claims:?})"))
+    })
+}
+
+struct Trial<'a, M: Manipulator> {
+    robot: &'a M,
+    space: ArmSpace<M::Joints>,
+    a: &'a Configuration<M::Joints>,
+    b: &'a Configuration<M::Joints>,
+    gaps_m: [f64; 2],
+    seed: u64,
+    claims: &'a ManipulatorClaims,
+}
+
+impl<M: Manipulator> Trial<'_, M> {
+    fn rng(&self, attempt: u64) -> Stream {
+        stream(self.seed, attempt, 0, Purpose::Extend)
+    }
+
+    fn poses(&self, q: &Configuration<M::Joints>, gap_m: f64) -> Vec<Isometry3<f64>> {
+        let mut poses = vec![Isometry3::identity(); self.robot.links().len()];
+        self.robot.link_poses(q, gap_m, &mut poses);
+        poses
+    }
+
+    fn link_name(&self, link: usize) -> &str {
+        self.robot.links().get(link).map_or("link", |l| &*l.body.name)
+    }
+}
+
+/// The space of a robot's configurations, its base anywhere within a kilometre.
+fn space_of<M: Manipulator>(robot: &M) -> Result<ArmSpace<M::Joints>, Broken> {
+    ArmSpace::new([-1e3; 2], [1e3; 2], robot.limits(), robot.joint_weights_m())
+        .map_err(|error| Broken::new(COUNTS, error.to_string(), "limits and weights that make a space"))
+}
+
+/// The base's frame in the world.
+fn world_from_base(&[x, y, yaw]: &[f64; 3]) -> Isometry3<f64> {
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
+    Isometry3::from_parts(Vector3::new(x, y, 0.0).into(), turn)
+}
+
+/// How far two poses are apart: the larger of metres and radians.
+pub(super) fn gap(p: &Isometry3<f64>, q: &Isometry3<f64>) -> f64 {
+    (p.translation.vector - q.translation.vector).norm().max(p.rotation.angle_to(&q.rotation))
+}
+
+/// `found` is `against`, up to `tolerance` in metres and radians; not a number fails.
+pub(super) fn same_pose(
+    law: &'static str,
+    found: &Isometry3<f64>,
+    against: &Isometry3<f64>,
+    tolerance: f64,
+) -> Result<(), Broken> {
+    if gap(found, against) <= tolerance {
+        return Ok(());
+    }
+    let text = |p: &Isometry3<f64>| {
+        format!("{:?} turned {:?}", p.translation.vector.as_slice(), p.rotation.quaternion().coords.as_slice())
+    };
+    Err(Broken::new(law, text(found), text(against)).within(tolerance))
+}

@@ -1,0 +1,53 @@
+//! What a robot says about itself.
+
+use std::collections::BTreeSet;
+
+use darrt_core::laws::{Broken, ensure, equal};
+
+use super::{COUNTS, HAND, LIMITS, LINKS};
+use crate::manipulator::{JointVector, Manipulator};
+
+pub(super) fn check<M: Manipulator>(robot: &M) -> Result<(), Broken> {
+    equal(COUNTS, &robot.limits().len(), &M::Joints::COUNT).map_err(|broken| broken.of("limits"))?;
+    equal(COUNTS, &robot.joint_weights_m().len(), &M::Joints::COUNT).map_err(|broken| broken.of("weights"))?;
+    for (joint, weight) in robot.joint_weights_m().iter().enumerate() {
+        let text = || format!("{weight:?}");
+        ensure(COUNTS, weight.is_finite() && *weight > 0.0, text, "a finite positive weight")
+            .map_err(|broken| broken.of(format_args!("joint {joint}")))?;
+    }
+    for (joint, limit) in robot.limits().iter().enumerate() {
+        let is_closed = limit.lower.is_finite() && limit.upper.is_finite() && limit.lower <= limit.upper;
+        let text = || format!("[{:?}, {:?}]", limit.lower, limit.upper);
+        ensure(LIMITS, is_closed || limit.is_unlimited(), text, "two ordered finite ends, or minus and plus infinity")
+            .map_err(|broken| broken.of(format_args!("joint {joint}")))?;
+    }
+    links(robot)?;
+    hand(robot)
+}
+
+fn links<M: Manipulator>(robot: &M) -> Result<(), Broken> {
+    let links = robot.links();
+    let mut names = BTreeSet::new();
+    for link in links {
+        ensure(LINKS, names.insert(&link.body.name), || format!("two links {:?}", link.body.name), "one of each name")?;
+    }
+    for (a, b) in robot.self_pairs() {
+        let holds = a != b && *a < links.len() && *b < links.len();
+        ensure(LINKS, holds, || format!("pair ({a}, {b}) of {} links", links.len()), "two different links")?;
+    }
+    Ok(())
+}
+
+fn hand<M: Manipulator>(robot: &M) -> Result<(), Broken> {
+    let hand = robot.hand();
+    let widest = hand.max_gap_m();
+    ensure(HAND, widest.is_finite() && widest > 0.0, || format!("widest gap {widest:?}"), "a finite positive gap")?;
+    let half = hand.tip_half_width_m();
+    ensure(HAND, half.is_finite() && half > 0.0, || format!("half width {half:?}"), "a finite positive width")?;
+    for gap_m in [0.0, 0.5 * widest, widest] {
+        let tip = hand.tip_beyond_tool_m(gap_m);
+        ensure(HAND, tip.is_finite(), || format!("tip at {tip:?} for gap {gap_m:?}"), "a finite place of the tips")?;
+        equal(HAND, &hand.tip_beyond_tool_m(gap_m), &tip)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,8 @@
+//! Support for tests of robots and table-top instances (feature `testing`): a robot to read and copy, a table, an
+//! oracle, deliberate law-breakers and proptest strategies.
+
+pub mod broken;
+pub mod gantry;
+pub mod scene_oracle;
+pub mod strategies;
+pub mod table;

@@ -1,0 +1,27 @@
+//! Robots, Jacobians and table-top instances that are wrong on purpose, each in the way people really get it wrong, and
+//! each with the law that must reject it and its honest twin: the laws of [`laws`](crate::laws) are themselves tested.
+//!
+//! The robots are a [`Gantry`](super::gantry::Gantry) with one function changed, the instances what the actions do at
+//! the [`table`](mod@super::table) with one thing changed.
+
+use std::fmt;
+
+use darrt_core::laws::Broken;
+pub use darrt_core::testing::broken::Case;
+
+mod bench;
+mod instances;
+mod inverses;
+mod jacobians;
+mod pushes;
+mod robots;
+
+/// All broken implementors of this crate's traits.
+pub fn cases() -> Vec<Case> {
+    [robots::cases(), inverses::cases(), jacobians::cases(), instances::cases(), pushes::cases()].concat()
+}
+
+/// The bench itself is at fault: never for the constants here.
+fn unusable(why: impl fmt::Display) -> Broken {
+    Broken::new("testing.bench: the honest twin can be built", why.to_string(), "a bench")
+}

@@ -1,0 +1,158 @@
+//! A gantry at two tables: two round tins that can be pushed and grasped from above, and a long box that can only be
+//! grasped.
+
+use std::sync::Arc;
+
+use darrt_core::error::Error;
+use darrt_core::state::{ObjectId, State};
+use darrt_geom::body::Body;
+use darrt_geom::shape::Shape;
+use darrt_geom::support::SupportSurface;
+use nalgebra::{Point2, Vector2, Vector3};
+
+use super::gantry::{Gantry, motion};
+use crate::arm_space::ArmSpace;
+use crate::error::PrimitiveError;
+use crate::grasp::footprint::Footprint;
+use crate::grasp::overhead::OverheadGrasps;
+use crate::grasp::{GraspFamily, Grip};
+use crate::manipulator::{Configuration, Manipulator};
+use crate::mode::{Mode, SurfaceId};
+use crate::object_space::{ObjectSpace, ObjectSpaceParts};
+use crate::push::edge_stop::{EdgeRule, RimReach};
+use crate::tabletop::{ActionSettings, Movable, PlaceSettings, PushSettings, Support, Tabletop, TabletopState};
+
+/// The domain.
+pub type Table = Tabletop<Gantry>;
+/// Its state.
+pub type TableState = TabletopState<Gantry>;
+
+/// Height of both tables, metres.
+const HEIGHT_M: f64 = 0.7;
+/// Radius and height of a tin, metres.
+const TIN_M: [f64; 2] = [0.04, 0.08];
+/// Sizes of the box, metres.
+const BOX_M: [f64; 3] = [0.05, 0.16, 0.06];
+/// How far below the top the fingertips grasp, metres.
+const DEPTH_M: f64 = 0.03;
+
+/// Why there is no table: never for the constants of this file.
+#[derive(Debug, thiserror::Error)]
+pub enum TableError {
+    /// A space is refused.
+    #[error(transparent)]
+    Space(#[from] Error),
+    /// A shape is refused.
+    #[error(transparent)]
+    Shape(#[from] darrt_geom::error::GeomError),
+    /// A grasp is refused.
+    #[error(transparent)]
+    Grasp(#[from] PrimitiveError),
+}
+
+/// One of the objects: 0 and 1 are tins, 2 is the box.
+pub fn object(index: usize) -> ObjectId {
+    ObjectId::new(index)
+}
+
+/// The tables with `robot` beside them.
+///
+/// # Errors
+/// [`TableError`] for a robot whose limits, weights or links cannot be used.
+pub fn table(robot: Gantry) -> Result<Table, TableError> {
+    let surface =
+        |name: &str, x| SupportSurface::rectangle(name, Point2::new(x, 0.0), Vector2::new(0.8, 1.2), 0.0, HEIGHT_M);
+    let surfaces = [surface("left table", -0.5)?, surface("right table", 0.5)?];
+    let [radius, height] = TIN_M;
+    let tin = |name: &str| movable(name, Shape::cylinder(radius, 0.5 * height)?, Footprint::Disc { radius }, &surfaces);
+    let [x, y, z] = BOX_M;
+    let cuboid = Shape::cuboid(Vector3::new(x, y, z) / 2.0)?;
+    let footprint = Footprint::Box { size_x: x, size_y: y };
+    let objects = vec![tin("red tin")?, tin("blue tin")?, movable("box", cuboid, footprint, &surfaces)?];
+    let space = ArmSpace::new([-2.0; 2], [2.0; 2], robot.limits(), robot.joint_weights_m())?;
+    let supports = surfaces.iter().map(|surface| Support { surface: surface.clone(), bodies: Vec::new() });
+    Ok(Tabletop::new(Arc::new(robot), space, objects, supports.collect(), settings())?)
+}
+
+/// The honest gantry at the tables.
+///
+/// # Errors
+/// None that could happen.
+pub fn honest_table() -> Result<Table, TableError> {
+    table(Gantry::new()?)
+}
+
+fn movable(
+    name: &str,
+    shape: Shape,
+    footprint: Footprint,
+    surfaces: &[SupportSurface],
+) -> Result<(ObjectSpace, Movable), TableError> {
+    let (low, high) = shape.local_aabb();
+    let half_height_m = high.z;
+    let reach_m = (high - low).norm() / 2.0;
+    let round_radius_m = match footprint {
+        Footprint::Disc { radius } => Some(radius),
+        Footprint::Box { .. } => None,
+    };
+    let space = ObjectSpace::new(ObjectSpaceParts {
+        lower: [-1.5, -1.5, 0.0],
+        upper: [1.5, 1.5, 1.6],
+        is_round: round_radius_m.is_some(),
+        metres_per_rad: reach_m,
+        half_height_m,
+        surfaces: surfaces.to_vec(),
+        surface_share: 0.7,
+    })?;
+    let grip = Grip { open_gap: 0.095, tip_ahead: super::gantry::TIP_BEYOND_TOOL_M, approach: 0.1 };
+    let grasps = OverheadGrasps::new(footprint, 2.0 * half_height_m, DEPTH_M, grip)?;
+    let movable = Movable {
+        body: Body::single(name, shape)?,
+        round_radius_m,
+        half_height_m,
+        reach_m,
+        is_pushable: round_radius_m.is_some(),
+        surfaces: (0..surfaces.len()).map(SurfaceId::new).collect(),
+        grasps: vec![Box::new(grasps) as Box<dyn GraspFamily>],
+        rim: RimReach::default(),
+        lift_m: [0.05, 0.15],
+    };
+    Ok((space, movable))
+}
+
+fn settings() -> ActionSettings<motion::Joints> {
+    ActionSettings {
+        push: PushSettings {
+            gap_m: 0.04,
+            fingertip_clearance_m: 0.005,
+            standoff_m: 0.03,
+            approach_m: 0.12,
+            edge_rule: EdgeRule::NearestEdgePoint,
+            edge_distance_m: [0.02, 0.06],
+        },
+        place: PlaceSettings { approach_directions: vec![-Vector3::z()], approach_m: 0.1, release_opening_m: 0.01 },
+        retreat_m: 0.1,
+        least_line_share: 0.5,
+        line_step_m: 0.02,
+        drives: [true, true],
+        base_tries: 12,
+        grasp_tries: 6,
+        postures: vec![motion::pointing_down(0.0, 0.0, 1.4, 0.0)],
+        travel_gap_m: 0.08,
+    }
+}
+
+/// Two tins and the box on the left table, the hand open above them.
+pub fn start(m: &Table) -> TableState {
+    let places = [[-0.6, -0.3], [-0.4, 0.3], [-0.5, 0.0]];
+    let standing = |(i, [x, y]): (usize, [f64; 2])| {
+        let surface = m.surface(SurfaceId::new(0))?;
+        let space = darrt_core::domain::Domain::objects(m).get(i)?;
+        Some(space.standing(surface, &Point2::new(x, y), 0.3))
+    };
+    State {
+        robot: Configuration { base: [-0.5, 0.0, 0.0], arm: motion::pointing_down(0.0, 0.0, 1.4, 0.0) },
+        objects: places.into_iter().enumerate().filter_map(standing).collect(),
+        mode: Mode::resting([SurfaceId::new(0); 3], 0.08),
+    }
+}

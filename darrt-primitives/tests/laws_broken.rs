@@ -1,0 +1,51 @@
+//! The laws are tested, too: each rejects the implementors that break it, and passes their honest twins.
+#![cfg(feature = "testing")]
+
+use std::collections::BTreeSet;
+
+use darrt_primitives::laws;
+use darrt_primitives::testing::broken::cases;
+
+#[test]
+fn every_broken_implementor_is_rejected_by_its_law_and_the_honest_twin_passes() {
+    let mut wrong = Vec::new();
+    for case in cases() {
+        match (case.broken)() {
+            Ok(()) => wrong.push(format!("{} passes, but breaks {}", case.name, case.law)),
+            Err(broken) if broken.law != case.law => {
+                wrong.push(format!("{} should break {}, but\n{broken}", case.name, case.law));
+            }
+            Err(_) => {}
+        }
+        if let Err(broken) = (case.honest)() {
+            wrong.push(format!("the honest twin of {} breaks\n{broken}", case.name));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+#[test]
+fn every_law_catches_something() {
+    let caught: BTreeSet<_> = cases().iter().map(|case| case.law).collect();
+    let idle: Vec<_> = laws::all().filter(|law| !caught.contains(law)).collect();
+    assert!(idle.is_empty(), "laws that catch nothing: {idle:#?}");
+}
+
+#[test]
+fn the_broken_are_many_and_distinct() {
+    let cases = cases();
+    let names: BTreeSet<_> = cases.iter().map(|case| (case.name, case.law)).collect();
+    assert!(cases.len() >= 40, "{}", cases.len());
+    assert_eq!(names.len(), cases.len());
+    assert!(cases.iter().all(|case| case.wrong.len() > 10));
+}
+
+#[test]
+fn every_message_says_how_to_see_it_again() {
+    for case in cases() {
+        let Err(broken) = (case.broken)() else { continue };
+        let text = broken.to_string();
+        assert!(text.contains(broken.name()) && text.contains("found:") && text.contains("against:"), "{text}");
+        assert!(text.contains("replay:"), "{text}");
+    }
+}
