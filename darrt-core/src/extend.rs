@@ -26,14 +26,11 @@ pub struct ExtendOptions {
     pub spacing_m: f64,
     /// At most this many primitives in one PATH (the authors' software used 100).
     pub max_depth: usize,
-    /// Metres of travel by which a blocked motion is cut shorter than it is free; at least 0. States that almost touch
-    /// what blocked them are the nearest to every target behind it, and nothing can be reached from them.
-    pub back_off_m: f64,
 }
 
 impl Default for ExtendOptions {
     fn default() -> Self {
-        Self { spacing_m: 0.1, max_depth: 20, back_off_m: 0.0 }
+        Self { spacing_m: 0.1, max_depth: 20 }
     }
 }
 
@@ -47,7 +44,6 @@ impl ExtendOptions {
     /// [`Error::Parameter`] for a spacing that is not finite and positive, or a depth of zero.
     pub fn check(&self) -> Result<(), Error> {
         in_range("spacing_m", self.spacing_m, f64::MIN_POSITIVE, f64::MAX, "finite and positive")?;
-        in_range("back_off_m", self.back_off_m, 0.0, f64::MAX, "finite and not negative")?;
         in_range("max_depth", self.max_depth as f64, 1.0, f64::MAX, "at least 1")?;
         Ok(())
     }
@@ -116,12 +112,7 @@ pub fn extend_around<D: Domain>(
             instance = Arc::new(around);
             free = problem.validity().free_prefix(m, &instance, start);
         }
-        let kept = if free.blame.is_some() && options.back_off_m > 0.0 {
-            free.fraction - options.back_off_m / instance.motion.length()
-        } else {
-            free.fraction
-        };
-        discretise(m, &instance, primitive, kept, options.spacing_m, start, &mut reached);
+        discretise(m, &instance, primitive, free.fraction, options.spacing_m, start, &mut reached);
         let is_short = free.fraction.is_nan() || free.fraction < 1.0;
         if let Some(blame) = free.blame.or_else(|| is_short.then(unexplained)) {
             blocked = Some((index, blame));
@@ -176,9 +167,10 @@ impl<D: Domain> Prefixes<'_, D> {
         let moves_object = |instance: &Instance<D>| !instance.moves.is_subset_of(ComponentSet::ROBOT);
         let is_bound = |instance: &Instance<D>| !reroute.is_free_to_turn(instance);
         rest.clone().any(|(_, ((_, instance), _))| moves_object(instance))
-            && rest.clone().filter(|(_, ((_, instance), _))| !is_bound(instance)).all(|(_, ((_, instance), end))| {
-                self.problem.validity().check(m, end, &instance.contacts).is_ok()
-            })
+            && rest
+                .clone()
+                .filter(|(_, ((_, instance), _))| !is_bound(instance))
+                .all(|(_, ((_, instance), end))| self.problem.validity().check(m, end, &instance.contacts).is_ok())
             && rest
                 .filter(|(_, ((_, instance), _))| is_bound(instance))
                 .all(|(i, _)| self.of(i).fraction >= WORTH_REACHING)

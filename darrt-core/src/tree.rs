@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::domain::Domain;
 use crate::motion::Instance;
-use crate::state::{ComponentSet, State};
+use crate::state::State;
 
 /// Index of a node in its tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -53,6 +53,11 @@ impl<D: Domain> Node<D> {
         Self { state, edge, placement, working_point: OnceLock::new() }
     }
 
+    /// Index of its placement in the tree.
+    pub(crate) fn placement(&self) -> usize {
+        self.placement as usize
+    }
+
     /// The robot's working point, computed when it is first asked for.
     pub fn working_point(&self, m: &D) -> [f64; 3] {
         *self.working_point.get_or_init(|| m.working_point(&self.state.robot))
@@ -82,8 +87,9 @@ impl<D: Domain> Tree<D> {
     /// Adds a node. `None` if the tree is full.
     pub fn add(&mut self, state: State<D>, edge: Edge<D>) -> Option<NodeId> {
         let id = NodeId(u32::try_from(self.nodes.len()).ok()?);
-        let placement = if edge.instance.moves.is_subset_of(ComponentSet::ROBOT) {
-            self.node(edge.parent)?.placement
+        let parent = self.node(edge.parent)?;
+        let placement = if parent.state.objects == state.objects {
+            parent.placement
         } else {
             self.penalties_m.push(0.0);
             u32::try_from(self.penalties_m.len() - 1).ok()?
@@ -115,6 +121,11 @@ impl<D: Domain> Tree<D> {
     /// A node; `None` if the id belongs to another tree.
     pub fn node(&self, id: NodeId) -> Option<&Node<D>> {
         self.nodes.get(id.index())
+    }
+
+    /// How many placements of the objects there are.
+    pub(crate) fn placements(&self) -> usize {
+        self.penalties_m.len()
     }
 
     /// How many nodes.

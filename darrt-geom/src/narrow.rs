@@ -122,7 +122,20 @@ fn bounded_gap(a: &Posed<'_>, b: &Posed<'_>) -> Gap {
     if distance.is_nan() || distance <= 0.0 {
         return Gap::Closed;
     }
-    Gap::Open { distance, lower: certified(a, b, &(apart / distance), distance), first, second }
+    let lower = certified(a, b, &(apart / distance), distance);
+    if matches!(a.shape, Shape::Mesh(_)) || matches!(b.shape, Shape::Mesh(_)) {
+        // The nearest points on a mesh with slivers may be far from the nearest; another of parry's walks over the
+        // triangles finds others (found by fuzzing).
+        return match parry3d_f64::query::distance(&pose_a, shape_a, &pose_b, shape_b) {
+            Ok(other) if other.distance <= 0.0 => Gap::Closed,
+            Ok(other) => {
+                let distance = distance.min(other.distance);
+                Gap::Open { distance, lower: lower.min(distance), first, second }
+            }
+            Err(_) => Gap::Closed,
+        };
+    }
+    Gap::Open { distance, lower, first, second }
 }
 
 /// A lower bound of the distance: the gap along `direction` (unit, from a to b), exact when the direction is that of the

@@ -24,9 +24,7 @@ use crate::problem_file::{DistanceName, PrimitiveName, ProblemFile, SamplerName,
 use crate::world::{self, Built, World, WorldState};
 
 /// Bound on the travel of any point of the robot between two nodes of the tree, metres; the hand moves about a third.
-const NODE_SPACING: f64 = 0.3;
-/// See [`ExtendOptions::back_off_m`].
-const BACK_OFF: f64 = 0.15;
+const NODE_SPACING: f64 = 1.0;
 /// See [`Strategy::try_penalty_m`].
 const TRY_PENALTY: f64 = 0.5;
 
@@ -220,11 +218,7 @@ pub fn strategy(
     Ok(Strategy {
         sampler,
         distance,
-        extend: ExtendOptions {
-            spacing_m: NODE_SPACING,
-            back_off_m: BACK_OFF,
-            ..ExtendOptions::default()
-        },
+        extend: ExtendOptions { spacing_m: NODE_SPACING, ..ExtendOptions::default() },
         reroute: Some(Box::new(Detour::default())),
         try_penalty_m: TRY_PENALTY,
     })

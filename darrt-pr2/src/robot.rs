@@ -97,7 +97,19 @@ impl Pr2 {
         let chain = ArmChain::new(side, rest.torso_m);
         let arm_frames = moving.iter().map(|b| b.frame).collect();
         let levers = model.link_levers(side);
-        Ok(Self { levers, model, arm, chain, rest, links, arm_frames, base_from_link, self_pairs, joint_radius, base_radius })
+        Ok(Self {
+            levers,
+            model,
+            arm,
+            chain,
+            rest,
+            links,
+            arm_frames,
+            base_from_link,
+            self_pairs,
+            joint_radius,
+            base_radius,
+        })
     }
 
     /// The kinematic model.

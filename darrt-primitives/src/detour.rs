@@ -8,13 +8,14 @@ use darrt_core::motion::Instance;
 use darrt_core::reroute::Reroute;
 use darrt_core::space::ComponentSpace;
 use darrt_core::validity::Validity;
-use nalgebra::Isometry3;
+use darrt_geom::body_set::BodySet;
 use rand::{Rng, RngExt};
 
 use crate::action::label;
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::manipulator::{Configuration, Manipulator};
-use crate::mode::{Contacts, Mode};
+use crate::mode::Contacts;
+use crate::surroundings::Worker;
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// How hard the search tries.
@@ -58,11 +59,11 @@ struct Grove<J> {
 /// The search between two ends.
 struct Search<'a, M: Manipulator> {
     m: &'a Tabletop<M>,
-    validity: &'a dyn Validity<Tabletop<M>>,
-    from: &'a TabletopState<M>,
-    mode: Mode,
-    label: &'static str,
-    template: &'a Instance<Tabletop<M>>,
+    worker: &'a mut Worker,
+    /// What moves, and what it may meet.
+    pairs: (BodySet, BodySet),
+    /// The state looked at last.
+    state: TabletopState<M>,
     part: Part,
     states_left: usize,
     spacing_m: f64,
@@ -95,66 +96,66 @@ impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
             _ => return None,
         };
         let states_left = if part == Part::Arm { self.arm_states } else { self.base_states };
-        let mut search = Search {
-            m,
-            validity,
-            from,
-            mode: inside.mode,
-            label: instance.label,
-            template: instance,
-            part,
-            states_left,
-            spacing_m: self.spacing_m,
-            step_m: self.step_m,
-        };
         // An end that is itself too near to something cannot be left, whichever way.
-        validity.check(m, &search.state_at(&from.robot), &Contacts::default()).ok()?;
-        validity.check(m, &search.state_at(&end.robot), &Contacts::default()).ok()?;
-        let mut way = search.connect(&from.robot, &end.robot, rng)?;
-        search.shorten(&mut way, self.shortcuts, rng);
+        validity.check(m, &inside, &Contacts::default()).ok()?;
+        validity.check(m, &end, &Contacts::default()).ok()?;
+        let around = m.surroundings();
+        let way = around.with_worker(|worker| {
+            around.pose_all(m.manipulator(), &inside, worker);
+            around.allow(&inside, &Contacts::default(), &mut worker.allowed);
+            let moved = around.moved(&inside, &end);
+            // A robot that drives with its arm at rest moves as one body, with what it holds.
+            let against = if part == Part::Base { BodySet::ALL.difference(&moved) } else { BodySet::ALL };
+            let (spacing_m, step_m) = (self.spacing_m, self.step_m);
+            let pairs = (moved, against);
+            let state = inside.clone();
+            let mut search = Search { m, worker, pairs, state, part, states_left, spacing_m, step_m };
+            let mut way = search.connect(&from.robot, &end.robot, rng)?;
+            search.shorten(&mut way, self.shortcuts, rng);
+            Some(way)
+        })?;
         let waypoints: Vec<_> = way.iter().skip(1).map(|q| Waypoint { robot: *q, pushed: 0.0 }).collect();
-        Some(search.instance(from, &waypoints))
+        let carried = inside.mode.held().map_or(Carried::Nothing, |held| Carried::Held(*held));
+        let motion = ArmMotion::new(m, from, &waypoints, carried, inside.mode.clone(), inside.mode);
+        Some(Instance {
+            label: instance.label,
+            motion: Box::new(motion),
+            contacts: Contacts::default(),
+            moves: instance.moves,
+            object: instance.object,
+            reversible: true,
+        })
     }
 }
 
 impl<M: Manipulator> Search<'_, M> {
-    /// The state with the robot at `q` and what it holds in its hand.
-    fn state_at(&self, q: &Configuration<M::Joints>) -> TabletopState<M> {
-        let mut state = self.from.clone();
-        state.robot = *q;
-        state.mode = self.mode.clone();
-        if let Some(held) = self.mode.held()
-            && q != &self.from.robot
-            && let Some(pose) = state.objects.get_mut(held.object.index())
+    /// Is nothing in the way with the robot at `q`, what it holds in its hand?
+    fn is_free(&mut self, q: &Configuration<M::Joints>) -> bool {
+        self.states_left = self.states_left.saturating_sub(1);
+        let robot = self.m.manipulator();
+        self.state.robot = *q;
+        if let Some(held) = self.state.mode.held()
+            && let Some(pose) = self.state.objects.get_mut(held.object.index())
         {
-            let world_from_object: Isometry3<f64> = self.m.manipulator().world_from_tool(q) * held.tool_from_object;
-            *pose = world_from_object;
+            *pose = robot.world_from_tool(q) * held.tool_from_object;
+            // The bounds of an object are no matter of touching.
+            if self.m.objects().get(held.object.index()).is_some_and(|space| !space.contains(pose)) {
+                return false;
+            }
         }
-        state
-    }
-
-    fn instance(&self, start: &TabletopState<M>, waypoints: &[Waypoint<M::Joints>]) -> Instance<Tabletop<M>> {
-        let carried = self.mode.held().map_or(Carried::Nothing, |held| Carried::Held(*held));
-        let motion = ArmMotion::new(self.m, start, waypoints, carried, self.mode.clone(), self.mode.clone());
-        Instance {
-            label: self.label,
-            motion: Box::new(motion),
-            contacts: Contacts::default(),
-            moves: self.template.moves,
-            object: self.template.object,
-            reversible: true,
-        }
+        let (moved, against) = &self.pairs;
+        let around = self.m.surroundings();
+        around.pose(robot, &self.state, moved, self.worker);
+        around.lower_bound(self.worker, moved, against, 0.0).is_ok()
     }
 
     /// How far the straight way from `a`, which is free, to `b` seems to be free, in `[0, 1]`.
     fn free_share(&mut self, a: &Configuration<M::Joints>, b: &Configuration<M::Joints>) -> f64 {
-        let length_m = self.m.manipulator().travel_m(a, b, self.m.held_reach_m(&self.mode));
+        let length_m = self.m.manipulator().travel_m(a, b, self.m.held_reach_m(&self.state.mode));
         let steps = (length_m / self.spacing_m).ceil().clamp(1.0, 1000.0);
         let mut i = 1.0;
         while i <= steps {
-            self.states_left = self.states_left.saturating_sub(1);
-            let state = self.state_at(&self.m.robot().interpolate(a, b, i / steps));
-            if self.validity.check(self.m, &state, &Contacts::default()).is_err() {
+            if !self.is_free(&self.m.robot().interpolate(a, b, i / steps)) {
                 return (i - 1.0) / steps;
             }
             i += 1.0;
@@ -222,7 +223,7 @@ impl<M: Manipulator> Search<'_, M> {
     fn grow(&mut self, grove: &mut Grove<M::Joints>, q: &Configuration<M::Joints>) -> Option<usize> {
         let parent = grove.nearest(self.m, q)?;
         let at = grove.nodes.get(parent)?.0;
-        let held_reach_m = self.m.held_reach_m(&self.mode);
+        let held_reach_m = self.m.held_reach_m(&self.state.mode);
         let length = self.m.manipulator().travel_m(&at, q, held_reach_m);
         let target = if length > self.step_m { self.m.robot().interpolate(&at, q, self.step_m / length) } else { *q };
         let share = self.free_share(&at, &target);
@@ -244,7 +245,7 @@ impl<M: Manipulator> Search<'_, M> {
             }
             let from = grove.nodes.get(grove.nodes.get(grown)?.1)?.0;
             // Blocked before the end of its step: the way is not free.
-            let held_reach_m = self.m.held_reach_m(&self.mode);
+            let held_reach_m = self.m.held_reach_m(&self.state.mode);
             if self.m.manipulator().travel_m(&from, &here, held_reach_m) < 0.99 * self.step_m {
                 return None;
             }

@@ -156,12 +156,7 @@ impl Surroundings {
     ///
     /// # Errors
     /// The first pair found.
-    pub fn check<M: Manipulator>(
-        &self,
-        robot: &M,
-        state: &TabletopState<M>,
-        contacts: &Contacts,
-    ) -> Result<(), Blame> {
+    pub fn check<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, contacts: &Contacts) -> Result<(), Blame> {
         let hit = self.with_worker(|worker| {
             self.allow(state, contacts, &mut worker.allowed);
             self.pose_all(robot, state, worker);
@@ -359,8 +354,10 @@ impl Surroundings {
         cap_m: f64,
     ) -> Result<f64, Hit> {
         let Worker { scratch, allowed, .. } = worker;
-        self.model
-            .lower_bound(scratch, &Query { moved, against, allowed, clearance: self.strictness.clearance_m, cap: cap_m })
+        self.model.lower_bound(
+            scratch,
+            &Query { moved, against, allowed, clearance: self.strictness.clearance_m, cap: cap_m },
+        )
     }
 
     /// How far the motion's parameter may grow, at most `cap`, before anything in `moved` and `against` can come nearer

@@ -57,8 +57,8 @@ impl SceneValidity {
         self.surroundings.model()
     }
 
-    /// Limits and supports: everything that needs no geometry of bodies.
-    fn check_rules<M: Manipulator>(m: &Tabletop<M>, state: &TabletopState<M>) -> Result<(), Blame> {
+    /// Joint limits and the bounds of the base.
+    fn check_limits<M: Manipulator>(m: &Tabletop<M>, state: &TabletopState<M>) -> Result<(), Blame> {
         let [x, y, _] = state.robot.base;
         if let Some((joint, value)) = m.robot().first_outside(&state.robot.arm) {
             let bound =
@@ -75,6 +75,12 @@ impl SceneValidity {
                 place: [x, y, 0.0],
             });
         }
+        Ok(())
+    }
+
+    /// Limits and supports: everything that needs no geometry of bodies.
+    fn check_rules<M: Manipulator>(m: &Tabletop<M>, state: &TabletopState<M>) -> Result<(), Blame> {
+        Self::check_limits(m, state)?;
         for (i, pose) in state.objects.iter().enumerate() {
             let id = ObjectId::new(i);
             Self::check_object(m, state, id, pose)?;
@@ -102,6 +108,21 @@ impl SceneValidity {
             }
             _ => Err(Blame { kind: BlockKind::OffSupport, first: name, second: "nothing".into(), place }),
         }
+    }
+
+    /// How far the parameter may grow before an object that slides could leave its surface: its centre is as far from
+    /// the edge as the surface says. For surfaces with notches; the end of a slide is looked at anyhow.
+    fn to_edge<M: Manipulator>(&self, m: &Tabletop<M>, state: &TabletopState<M>, leg: &Leg) -> f64 {
+        let mut least = f64::INFINITY;
+        for (i, (body, pose)) in self.surroundings.objects().iter().zip(&state.objects).enumerate() {
+            if leg.moved.contains(*body)
+                && let Some(surface) = state.mode.support_of(ObjectId::new(i)).and_then(|s| m.surface(s))
+            {
+                let depth_m = surface.depth(&Point2::new(pose.translation.x, pose.translation.y));
+                least = least.min(depth_m.max(0.0) / leg.fastest);
+            }
+        }
+        least
     }
 
     /// Objects that moved still keep the rules.
@@ -216,6 +237,10 @@ impl SceneValidity {
             }
             instance.motion.at_into(m, end, &mut next);
             next.mode.clone_from(&here.mode);
+            // Limits and bounds are convex: what holds at both ends of a leg holds between them.
+            if let Err(blame) = Self::check_limits(m, &next) {
+                return FreePrefix::blocked(t, blame);
+            }
             let leg = self.leg(m, &here, &next, (end, end - t), worker);
             if let Err((free, blame)) = self.advance_leg(m, instance, &leg, t, &mut here, &mut next, worker) {
                 return FreePrefix::blocked(free, blame);
@@ -249,17 +274,20 @@ impl SceneValidity {
         let strictness = around.strictness();
         // Farther than this no pair is told apart; nearer than this every pair may go unseen.
         let (cap, least) = (strictness.cap_m / leg.fastest, strictness.clearance_m / leg.fastest);
-        // The last state that was found free.
-        let mut free = t;
+        // Nothing touches up to here, and the rules were last found kept there.
+        let (mut free, mut kept) = (t, t);
         loop {
             let pairs = (&leg.moved, &leg.against, &leg.chain);
-            let ahead = around.free_step(worker, pairs, cap.min(leg.end - t)).map_err(|hit| (free, around.blame(&hit)))?;
-            self.check_moved_objects(m, here, &leg.moved).map_err(|blame| (free, blame))?;
-            free = t;
+            let ahead =
+                around.free_step(worker, pairs, cap.min(leg.end - t)).map_err(|hit| (free, around.blame(&hit)))?;
+            self.check_moved_objects(m, here, &leg.moved).map_err(|blame| (kept, blame))?;
+            kept = t;
             if t >= leg.end {
                 return Ok(());
             }
-            t = if t + ahead + least >= leg.end { leg.end } else { t + ahead + least };
+            let ahead = ahead.min(self.to_edge(m, here, leg));
+            free = (t + ahead).min(leg.end);
+            t = if free + least >= leg.end { leg.end } else { free + least };
             instance.motion.at_into(m, t, next);
             // At the end of a motion the mode may change, which is judged apart.
             next.mode.clone_from(&here.mode);

@@ -25,7 +25,7 @@ impl<D: Domain> Distance<D> for ExactTour {
     }
 
     fn nearest(&self, m: &D, tree: &Tree<D>, to: &PartialState<D>) -> Option<NodeId> {
-        nearest_departure(m, tree, |from, bound| exact_tour(m, from, to, bound))
+        nearest_departure(m, tree, to, |from, bound| exact_tour(m, from, to, bound))
     }
 }
 

@@ -21,7 +21,7 @@ impl<D: Domain> Distance<D> for GreedyVisit {
     }
 
     fn nearest(&self, m: &D, tree: &Tree<D>, to: &PartialState<D>) -> Option<NodeId> {
-        nearest_departure(m, tree, |from, bound| greedy_tour(m, from, to, bound))
+        nearest_departure(m, tree, to, |from, bound| greedy_tour(m, from, to, bound))
     }
 }
 
@@ -36,13 +36,23 @@ pub(super) struct Departure<'a, D: Domain> {
 pub(super) fn nearest_departure<D: Domain>(
     m: &D,
     tree: &Tree<D>,
+    to: &PartialState<D>,
     tour: impl Fn(&Departure<'_, D>, f64) -> f64,
 ) -> Option<NodeId> {
+    // OPTIMIZATION: nodes of one placement share the ways of the objects, which often rule all of them out.
+    let mut ways: Vec<Option<f64>> = vec![None; tree.placements()];
     let mut best: Option<(NodeId, f64)> = None;
     for (id, node) in tree.iter() {
-        let from = Departure { state: &node.state, working_point: Some(node.working_point(m)) };
         let bound = best.map_or(f64::INFINITY, |(_, least)| least);
         let penalty_m = tree.penalty_m(node);
+        let least = match ways.get_mut(node.placement()) {
+            Some(slot) => *slot.get_or_insert_with(|| open_objects(m, &node.state, to).1) + penalty_m,
+            None => 0.0,
+        };
+        if best.is_some() && least >= bound {
+            continue;
+        }
+        let from = Departure { state: &node.state, working_point: Some(node.working_point(m)) };
         let length = tour(&from, bound - penalty_m) + penalty_m;
         if best.is_none_or(|(_, least)| length < least || (least.is_nan() && !length.is_nan())) {
             best = Some((id, length));

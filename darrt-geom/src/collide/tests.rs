@@ -295,3 +295,73 @@ fn a_scratch_of_another_model_does_no_harm() {
     small.set_poses(&mut scratch, &[Isometry3::identity(), Isometry3::identity()]);
     assert_eq!(small.clearance(&mut scratch, &BodySet::from_iter([a]), &none, 0.0, 1.0), Ok(1.0));
 }
+
+/// Found by fuzzing: the nearest points of a box and a mesh with slivers were farther apart than the two.
+#[test]
+fn a_mesh_with_slivers_is_no_farther_than_it_is() {
+    let point = |p: [f64; 3]| Point3::from(p.map(|x| x / 400.0));
+    let corners: Vec<_> = [
+        [-73.0, -73.0, -73.0],
+        [-73.0, -73.0, 9.0],
+        [-73.0, -73.0, -73.0],
+        [-73.0, -73.0, -73.0],
+        [-73.0, -73.0, -73.0],
+        [-73.0, -1.0, -1.0],
+        [1.0, -73.0, -73.0],
+        [-72.0, -73.0, -73.0],
+        [-73.0, -73.0, -73.0],
+        [-73.0, -73.0, -73.0],
+    ]
+    .map(point)
+    .to_vec();
+    let strip: Vec<[u32; 3]> = (0..8).map(|i| [i, i + 1, i + 2]).collect();
+    let mesh = Shape::Mesh(crate::TriangleMesh::new("mesh", &corners, &strip).unwrap().into());
+    let length = |share: f64| 0.005 + 0.495 * share / 65535.0;
+    let turned = |x: u8, z: u8| {
+        let quarter =
+            |axis, count: u8| UnitQuaternion::from_axis_angle(&axis, f64::from(count) * std::f64::consts::FRAC_PI_2);
+        quarter(Vector3::z_axis(), z) * quarter(Vector3::x_axis(), x)
+    };
+    let pose = |at: [f64; 3], turn| Isometry3::from_parts((Vector3::from(at) / 8.0).into(), turn);
+    let cuboid = |half: [f64; 3]| Shape::cuboid(Vector3::from(half)).unwrap();
+    let bodies = [
+        Body::new("first", vec![Part::centred(cuboid([length(17306.0), 0.5, 0.375]))]).unwrap(),
+        Body::new(
+            "second",
+            vec![
+                Part::centred(cuboid([26050.0, 10394.0, 21319.0].map(length))),
+                Part {
+                    shape: cuboid([11785.0, 35821.0, 59864.0].map(length)),
+                    body_from_shape: pose([1.0, 1.0, 1.0], turned(0, 0)),
+                },
+            ],
+        )
+        .unwrap(),
+        Body::new(
+            "third",
+            vec![
+                Part::centred(cuboid([0.125, length(47031.0), length(47031.0)])),
+                Part { shape: mesh, body_from_shape: pose([8.0, -2.0, -3.0], turned(1, 3)) },
+            ],
+        )
+        .unwrap(),
+    ];
+    let poses = [
+        pose([1.0, 1.0, 2.0], turned(0, 1)),
+        pose([4.0, 0.0, -7.0], turned(2, 0)),
+        pose([-8.0, 0.0, 0.0], turned(0, 0)),
+    ];
+    let mut builder = CollisionModel::builder();
+    bodies.iter().for_each(|body| drop(builder.add_moving(body).unwrap()));
+    let model = builder.build();
+    let mut scratch = model.scratch();
+    model.set_poses(&mut scratch, &poses);
+    let none = AllowedContacts::none();
+    let posed: Vec<_> =
+        bodies.iter().zip(poses).map(|(body, world_from_body)| PosedBody { body, world_from_body }).collect();
+    let judged = oracle::nearest(&posed, &|_, _| false).unwrap().unwrap();
+    let found = model.clearance(&mut scratch, &BodySet::ALL, &none, 0.0, 10.0).unwrap();
+    assert!(found <= judged.distance + 1e-9, "{found} {judged:?}");
+    let strict = model.clearance(&mut scratch, &BodySet::ALL, &none, 0.209, 39.0);
+    assert!(judged.distance < 0.209 && strict.is_err(), "{strict:?} {judged:?}");
+}

@@ -120,9 +120,8 @@ fn way_of<M: Manipulator>(
     if out.share < m.settings().least_line_share {
         return Err(Refused::Unreachable);
     }
-    let robot = |arm: Option<&M::Joints>| {
-        arm.map(|arm| Configuration { base: q.base, arm: *arm }).ok_or(Refused::Unreachable)
-    };
+    let robot =
+        |arm: Option<&M::Joints>| arm.map(|arm| Configuration { base: q.base, arm: *arm }).ok_or(Refused::Unreachable);
     probe.check(&robot(out.arms.last())?, &Contacts::default())?;
     let [least, best] = movable.lift_m;
     let up = line::follow(m, &q.base, &q.arm, at_grasp, &(Vector3::z() * best));

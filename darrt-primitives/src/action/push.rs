@@ -153,9 +153,8 @@ fn way_of<M: Manipulator>(
     if along.share * end.length < LEAST_PUSH_M.min(end.length) {
         return Err(Refused::Unreachable);
     }
-    let robot = |arm: Option<&M::Joints>| {
-        arm.map(|arm| Configuration { base: q.base, arm: *arm }).ok_or(Refused::Unreachable)
-    };
+    let robot =
+        |arm: Option<&M::Joints>| arm.map(|arm| Configuration { base: q.base, arm: *arm }).ok_or(Refused::Unreachable);
     place_object(probe, push.object, push.pose_at(along.share));
     let at_end = probe.check(&robot(along.arms.last())?, &touching);
     place_object(probe, push.object, *push.pose);

@@ -2,6 +2,7 @@
 
 use darrt_core::domain::Domain;
 use darrt_core::primitive::{Infeasible, Instances};
+use darrt_core::space::ComponentSpace;
 use darrt_core::space::so2::wrap;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
@@ -38,7 +39,8 @@ pub fn transfer<M: Manipulator>(
 /// Moves only the base so that the held object comes to `target`: possible when only x, y and yaw differ.
 ///
 /// # Errors
-/// [`Infeasible::NoGrasp`] if nothing is held, [`Infeasible::Unreachable`] if the base alone cannot do it.
+/// [`Infeasible::NoGrasp`] if nothing is held, [`Infeasible::Unreachable`] if the base alone cannot do it,
+/// [`Infeasible::Limits`] if it would have to leave its bounds.
 pub fn transfer_by_base<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
@@ -59,6 +61,9 @@ pub fn transfer_by_base<M: Manipulator>(
     let flat_turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
     let offset = flat_turn * (Vector3::new(x, y, 0.0) - here.translation.vector);
     let base = [target.translation.x + offset.x, target.translation.y + offset.y, wrap(heading + yaw)];
+    if !m.robot().base().contains(&base) {
+        return Err(Infeasible::Limits);
+    }
     let mut chain = Chain::at(from);
     base_to(m, &mut chain, &base, from.mode.gap_m());
     chain.finish()

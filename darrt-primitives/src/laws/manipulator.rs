@@ -60,6 +60,9 @@ pub const LINE_BOW: &str = "manipulator.line-bow: half-way between two configura
 pub const TRAVEL_MEASURE: &str = "manipulator.travel-measure: travel_m is finite, 0 from a configuration to itself, the same backwards, and not less for a larger held object";
 /// Travel is a bound.
 pub const TRAVEL: &str = "manipulator.travel: no point of the robot travels farther than travel_m says";
+/// See the text.
+pub const TRAVEL_LINKS: &str =
+    "manipulator.travel-links: no point of a link, or of what is held, travels farther than link_travel_m says of it";
 /// Travel of the held object.
 pub const TRAVEL_HELD: &str =
     "manipulator.travel-held: no point within the held reach of the tool travels farther than travel_m says";
@@ -89,6 +92,7 @@ pub const LAWS: &[&str] = &[
     NEAR_SELF,
     MAY_REACH,
     LINE_STEP,
+    TRAVEL_LINKS,
     LINE_BOW,
     TRAVEL_MEASURE,
     TRAVEL,

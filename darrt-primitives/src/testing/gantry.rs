@@ -46,6 +46,8 @@ pub struct Gantry {
     pub poses: fn(&Configuration, f64) -> [Isometry3<f64>; 5],
     /// [`Manipulator::travel_m`].
     pub travel: fn(&Configuration, &Configuration, f64) -> f64,
+    /// [`Manipulator::link_travel_m`].
+    pub link_travel: fn(&Configuration, &Configuration, f64, &mut [f64]) -> f64,
     /// [`Manipulator::limits`].
     pub limits: Vec<JointLimit>,
     /// [`Manipulator::joint_weights_m`].
@@ -106,6 +108,7 @@ impl Gantry {
             may_reach: motion::may_reach,
             poses,
             travel: motion::travel,
+            link_travel,
             limits: motion::LIMITS.to_vec(),
             weights_m: vec![1.0, 1.0, 1.0, 1.0, 0.2, 0.2, 0.2],
             self_pairs: vec![(0, 2), (0, 3), (0, 4)],
@@ -113,6 +116,13 @@ impl Gantry {
             hand: Gripper { max_gap_m: MAX_GAP_M },
         })
     }
+}
+
+/// Every link as far as the farthest.
+pub fn link_travel(a: &Configuration, b: &Configuration, held_reach_m: f64, out: &mut [f64]) -> f64 {
+    let bound = motion::travel(a, b, held_reach_m);
+    out.fill(bound);
+    bound
 }
 
 /// Poses of all links.
@@ -174,6 +184,10 @@ impl Manipulator for Gantry {
 
     fn travel_m(&self, a: &Configuration, b: &Configuration, held_reach_m: f64) -> f64 {
         (self.travel)(a, b, held_reach_m)
+    }
+
+    fn link_travel_m(&self, a: &Configuration, b: &Configuration, held_reach_m: f64, out: &mut [f64]) -> f64 {
+        (self.link_travel)(a, b, held_reach_m, out)
     }
 
     fn joint_weights_m(&self) -> &[f64] {

@@ -71,7 +71,7 @@ pub fn table(robot: Gantry) -> Result<Table, TableError> {
     let objects = vec![tin("red tin")?, tin("blue tin")?, movable("box", cuboid, footprint, &surfaces)?];
     let space = ArmSpace::new([-2.0; 2], [2.0; 2], robot.limits(), robot.joint_weights_m())?;
     let supports = surfaces.iter().map(|surface| Support { surface: surface.clone(), bodies: Vec::new() });
-    Ok(Tabletop::new(Arc::new(robot), space, objects, supports.collect(), settings())?)
+    Ok(Tabletop::new(Arc::new(robot), space, objects, supports.collect(), &[], settings())?)
 }
 
 /// The honest gantry at the tables.

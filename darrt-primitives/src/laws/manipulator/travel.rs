@@ -4,7 +4,7 @@ use darrt_core::laws::{Broken, at_most, equal, measure};
 use darrt_core::space::ComponentSpace;
 use nalgebra::{Isometry3, Point3, Vector3};
 
-use super::{TRAVEL, TRAVEL_HELD, TRAVEL_MEASURE, Trial};
+use super::{TRAVEL, TRAVEL_HELD, TRAVEL_LINKS, TRAVEL_MEASURE, Trial};
 use crate::laws::tabletop::corners;
 use crate::manipulator::{Configuration, Manipulator};
 
@@ -55,18 +55,24 @@ impl<M: Manipulator> Trial<'_, M> {
     fn bounds(&self, end: &Configuration<M::Joints>) -> Result<(), Broken> {
         let looks: Vec<_> = LOOKS.iter().map(|t| (*t, self.space.interpolate(self.a, end, *t))).collect();
         let bound = self.robot.travel_m(self.a, end, 0.0);
+        let mut of_each = vec![0.0; self.robot.links().len()];
         let poses: Vec<_> = looks.iter().map(|(t, q)| (*t, self.poses(q, self.gaps_m[1]))).collect();
         for (link, part) in self.robot.links().iter().enumerate() {
             let points: Vec<_> = corners(&part.body, &Isometry3::identity()).collect();
             let of_link: Vec<_> = poses.iter().filter_map(|(t, all)| Some((*t, *all.get(link)?))).collect();
             stays_within(TRAVEL, &of_link, &points, bound).map_err(|broken| broken.of(&part.body.name))?;
+            self.robot.link_travel_m(self.a, end, 0.0, &mut of_each);
+            let bound = of_each.get(link).copied().unwrap_or(0.0);
+            stays_within(TRAVEL_LINKS, &of_link, &points, bound).map_err(|broken| broken.of(&part.body.name))?;
         }
         let tools: Vec<_> = looks.iter().map(|(t, q)| (*t, self.robot.world_from_tool(q))).collect();
         for reach in self.claims.held_reach_m {
             let ball: Vec<_> = directions().map(|d| Point3::from(d * reach)).collect();
             let bound = self.robot.travel_m(self.a, end, reach);
-            stays_within(TRAVEL_HELD, &tools, &ball, bound)
-                .map_err(|broken| broken.of(format_args!("held object that reaches {reach:?} m")))?;
+            let held = |broken: Broken| broken.of(format_args!("held object that reaches {reach:?} m"));
+            stays_within(TRAVEL_HELD, &tools, &ball, bound).map_err(held)?;
+            let bound = self.robot.link_travel_m(self.a, end, reach, &mut of_each);
+            stays_within(TRAVEL_LINKS, &tools, &ball, bound).map_err(held)?;
         }
         Ok(())
     }

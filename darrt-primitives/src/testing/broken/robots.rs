@@ -8,10 +8,10 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use super::{Case, unusable};
 use crate::laws::manipulator::{
     BASE_FRAME, BASE_LINKS, COUNTS, FINGERS_FOLLOW, GAP, HAND, LIMITS, LINKS, PURE, RIGID, TRAVEL, TRAVEL_HELD,
-    TRAVEL_MEASURE,
+    TRAVEL_LINKS, TRAVEL_MEASURE,
 };
 use crate::laws::{ManipulatorClaims, check_manipulator};
-use crate::testing::gantry::{Configuration, Gantry, motion, poses};
+use crate::testing::gantry::{Configuration, Gantry, link_travel, motion, poses};
 
 /// Two ordinary configurations.
 const A: Configuration = Configuration { base: [0.3, -0.4, 0.5], arm: [0.1, 0.2, 1.0, 0.05, 3.0, 1.4, 0.3] };
@@ -169,6 +169,15 @@ fn travels() -> Vec<Case> {
                 robot.travel = |a, b, held_m| {
                     let level = Configuration { base: [b.base[0], b.base[1], a.base[2]], ..*b };
                     motion::travel(a, &level, held_m) + (b.base[2] - a.base[2]).abs() * 0.2
+                };
+            })
+        }),
+        case("parked arm", "the base's drive is forgotten for the links that no joint moves", TRAVEL_LINKS, || {
+            robot(|robot| {
+                robot.link_travel = |a, b, held_m, out| {
+                    let bound = link_travel(a, b, held_m, out);
+                    out.iter_mut().take(1).for_each(|of_base| *of_base = 0.0);
+                    bound
                 };
             })
         }),
