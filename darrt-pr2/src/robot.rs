@@ -98,7 +98,6 @@ impl Pr2 {
         let arm_frames = moving.iter().map(|b| b.frame).collect();
         let levers = model.link_levers(side);
         Ok(Self {
-            levers,
             model,
             arm,
             chain,
@@ -109,6 +108,7 @@ impl Pr2 {
             self_pairs,
             joint_radius,
             base_radius,
+            levers,
         })
     }
 

@@ -155,11 +155,11 @@ impl SceneValidity {
         let mut chain = *around.all_links();
         let drives = a.robot.arm == b.robot.arm && a.robot.base != b.robot.base;
         let mut held_travel = 0.0;
-        if a.robot != b.robot {
+        if a.robot == b.robot {
+            worker.link_travel.fill(0.0);
+        } else {
             let reach_m = m.held_reach_m(&a.mode);
             held_travel = m.manipulator().link_travel_m(&a.robot, &b.robot, reach_m, &mut worker.link_travel);
-        } else {
-            worker.link_travel.fill(0.0);
         }
         worker.reach.fill(0.0);
         let mut fastest = 0.0_f64;

@@ -352,7 +352,9 @@ fn a_mesh_with_slivers_is_no_farther_than_it_is() {
         pose([-8.0, 0.0, 0.0], turned(0, 0)),
     ];
     let mut builder = CollisionModel::builder();
-    bodies.iter().for_each(|body| drop(builder.add_moving(body).unwrap()));
+    for body in &bodies {
+        builder.add_moving(body).unwrap();
+    }
     let model = builder.build();
     let mut scratch = model.scratch();
     model.set_poses(&mut scratch, &poses);
