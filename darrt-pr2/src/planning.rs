@@ -1,5 +1,6 @@
 //! Planning a problem file from end to end: build, search, verify, export.
 
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use darrt_core::budget::{Budget, Cancel, Stop};
@@ -18,9 +19,10 @@ use darrt_primitives::detour::Detour;
 use darrt_primitives::validity::SceneValidity;
 
 use crate::export::Exporter;
-use crate::plan_file::{PlanFile, PlannerFacts};
+use crate::plan_file::{PlanFile, PlannerFacts, Step};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{DistanceName, PrimitiveName, ProblemFile, SamplerName, Sampling};
+use crate::verify::Proof;
 use crate::world::{self, Built, World, WorldState};
 
 /// Bound on the travel of any point of the robot between two nodes of the tree, metres; the hand moves about a third.
@@ -70,6 +72,8 @@ impl PlanRequest {
 pub struct PlanResult {
     /// The verified plan, if one was found.
     pub plan: Option<PlanFile>,
+    /// What the verifier saw of that plan.
+    pub proof: Option<Proof>,
     /// Why it stopped.
     pub stop: Stop,
     /// Counts per primitive.
@@ -91,8 +95,12 @@ pub struct PlanResult {
 /// The judge: a plan is exported and the plan file is verified, so that what is accepted is what the user gets.
 #[derive(Debug)]
 struct FileVerifier {
-    exporter: Exporter,
+    exporter: Arc<Exporter>,
+    accepted: Accepted,
 }
+
+/// The steps and proofs of all plans that were accepted: one for each thread that came to one, at most.
+type Accepted = Arc<Mutex<Vec<(Vec<Step>, Proof)>>>;
 
 impl Verifier<World> for FileVerifier {
     fn verify(&self, m: &World, _: &WorldState, _: &dyn Goal<World>, plan: &Plan<World>) -> Result<(), Refusal> {
@@ -105,7 +113,12 @@ impl Verifier<World> for FileVerifier {
         };
         let file = self.exporter.export(m, plan, 0, nobody);
         match crate::verify::verify(&file) {
-            Ok(_) => Ok(()),
+            Ok(proof) => {
+                if let Ok(mut accepted) = self.accepted.lock() {
+                    accepted.push((file.steps, proof));
+                }
+                Ok(())
+            }
             Err(refusal) => Err(Refusal { step: None, at: 0.0, reason: refusal.to_string() }),
         }
     }
@@ -116,7 +129,8 @@ impl Verifier<World> for FileVerifier {
 pub struct Prepared {
     /// The planner's problem.
     pub problem: Problem<World>,
-    exporter: Exporter,
+    exporter: Arc<Exporter>,
+    accepted: Accepted,
 }
 
 /// Builds and checks everything about a problem before the search.
@@ -129,8 +143,9 @@ pub fn prepare(file: &ProblemFile) -> Result<Prepared, PlanningError> {
     let Built { world, start, goal, scene } = world::build(file)?;
     let validity = SceneValidity::new(&world);
     crate::goal_check::check_goal(&world, &goal, &scene)?;
-    let exporter = Exporter::new(file, &world)?;
-    let verifier = FileVerifier { exporter: Exporter::new(file, &world)? };
+    let exporter = Arc::new(Exporter::new(file, &world)?);
+    let accepted = Accepted::default();
+    let verifier = FileVerifier { exporter: Arc::clone(&exporter), accepted: Arc::clone(&accepted) };
     let problem = Problem::new(Parts {
         domain: world,
         start,
@@ -139,7 +154,7 @@ pub fn prepare(file: &ProblemFile) -> Result<Prepared, PlanningError> {
         validity: Box::new(validity),
         verifier: Box::new(verifier),
     })?;
-    Ok(Prepared { problem, exporter })
+    Ok(Prepared { problem, exporter, accepted })
 }
 
 /// Plans. Stopping without a plan is a result, not an error.
@@ -177,8 +192,13 @@ fn result(
     let facts = PlannerFacts { sampler, distance, iterations: outcome.iterations, restarts: outcome.restarts, nodes };
     let m = prepared.problem.domain();
     let plan = outcome.solution.map(|s| prepared.exporter.export(m, s.plan(), request.seed, facts));
+    let accepted = prepared.accepted.lock().ok();
+    let proof = plan.as_ref().zip(accepted).and_then(|(plan, accepted)| {
+        accepted.iter().find(|(steps, _)| *steps == plan.steps).map(|(_, proof)| proof.clone())
+    });
     PlanResult {
         plan,
+        proof,
         stop: outcome.stop,
         accounts: outcome.accounts,
         iterations: outcome.iterations,

@@ -84,6 +84,7 @@ mod tests {
         }
         accounts.count(&[Bucket::NoGrasp, Bucket::Accepted, Bucket::NotUseful], 1, false, None);
         let result = PlanResult {
+            proof: None,
             plan: None,
             stop: Stop::TimeLimit,
             accounts,

@@ -14,7 +14,6 @@ use crate::picture::{self, Extent, Format, Story};
 use crate::plan_file::PlanFile;
 use crate::planning::{self, PlanRequest, PlanResult};
 use crate::problem_file::ProblemFile;
-use crate::verify;
 
 /// Plans and reports.
 ///
@@ -29,19 +28,16 @@ pub(super) fn run(options: &PlanOptions, output: &mut Output) -> Result<Exit, Fa
     let mut progress = Progress::start(&request.problem.name, limit(&request), options.quiet);
     let result = planning::plan(&request, &cancel, &mut progress)
         .map_err(|error| Failure::input(located(&options.problem, &error.to_string())))?;
-    progress.say("verifying");
-    let proof = result.plan.as_ref().map(verify::verify);
     progress.finish();
     if options.stats {
         output.print(&statistics::report(&result.accounts))?;
     }
-    let (Some(plan), Some(proof)) = (&result.plan, proof) else { return Err(failed(&request, &result)) };
-    let proof = proof.map_err(|refusal| Failure::new(Exit::Refused, format!("{}: {refusal}", options.problem)))?;
+    let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else { return Err(failed(&request, &result)) };
     let story = Story::of_plan(plan)?;
     if !options.quiet {
         output.print(&summary(&request, &result))?;
         output.print(&steps::table(&story))?;
-        output.print(&check::words(&proof))?;
+        output.print(&check::words(proof))?;
     }
     files.write(plan, &story)?;
     if !options.quiet {

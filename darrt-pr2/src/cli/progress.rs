@@ -43,11 +43,6 @@ impl Progress {
         Self { bar, counts, deadline: limit.and_then(|limit| now.checked_add(limit)), next: now }
     }
 
-    /// Shows what is done after the search.
-    pub(super) fn say(&self, what: &'static str) {
-        self.bar.set_message(what);
-    }
-
     /// Takes the line away.
     pub(super) fn finish(&self) {
         self.bar.finish_and_clear();
