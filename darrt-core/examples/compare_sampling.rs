@@ -29,6 +29,7 @@ fn main() -> Result<(), Error> {
                 extend: ExtendOptions::default(),
                 reroute: None,
                 try_penalty_m: 0.0,
+                shorten: darrt_core::shorten::ShortenOptions::default(),
             };
             let mut needed: Vec<u64> = (0..seeds).filter_map(|seed| iterations(&problem, &strategy, seed)).collect();
             needed.sort_unstable();

@@ -16,6 +16,8 @@ pub enum Purpose {
     Extend,
     /// Things drawn once per attempt.
     Attempt,
+    /// Looking for a shorter plan.
+    Shorten,
 }
 
 /// The generator for one purpose in one iteration of one attempt.

@@ -11,6 +11,7 @@ use crate::problem::Problem;
 use crate::random::{Purpose, stream};
 use crate::reroute::Reroute;
 use crate::sample::Sampler;
+use crate::shorten::{ShortenOptions, shorten};
 use crate::state::State;
 use crate::tree::{Edge, NodeId, Tree};
 use crate::validity::Blame;
@@ -30,6 +31,8 @@ pub struct Strategy<D: Domain> {
     /// extension from it; at least 0. Zero is the plain arg min of Algorithm 1, which asks the nearest placement again and
     /// again even where nothing leads on (paper section 6.2).
     pub try_penalty_m: f64,
+    /// What is done for a shorter plan once one is found.
+    pub shorten: ShortenOptions,
 }
 
 impl<D: Domain> std::fmt::Debug for Strategy<D> {
@@ -157,6 +160,14 @@ impl<'p, D: Domain> Darrt<'p, D> {
         let lost = || Refusal { step: None, at: 0.0, reason: "the tree has no such node".to_owned() };
         let plan = Plan::to_node(&self.tree, node).ok_or_else(lost)?;
         let p = self.problem;
+        let Strategy { extend, reroute, .. } = self.strategy;
+        let rng = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Shorten);
+        // A shorter plan that the verifier refuses is no reason to give up the longer one.
+        if let Some(short) = shorten(p, extend, reroute.as_deref(), &plan, self.strategy.shorten, rng)
+            && let Ok(solution) = Solution::prove(p.domain(), p.start(), p.goal(), p.verifier(), short)
+        {
+            return Ok(solution);
+        }
         Solution::prove(p.domain(), p.start(), p.goal(), p.verifier(), plan)
     }
 

@@ -13,6 +13,7 @@ use darrt_core::plan::Plan;
 use darrt_core::problem::{Parts, Problem};
 use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler};
 use darrt_core::search::Strategy;
+use darrt_core::shorten::ShortenOptions;
 use darrt_core::solve::{Outcome, SolveOptions, solve};
 use darrt_core::verify::{Refusal, Verifier};
 use darrt_primitives::detour::Detour;
@@ -27,8 +28,10 @@ use crate::world::{self, Built, World, WorldState};
 
 /// Bound on the travel of any point of the robot between two nodes of the tree, metres; the hand moves about a third.
 const NODE_SPACING: f64 = 1.0;
+/// Extensions that are spent on a shorter plan.
+const SHORTENING: usize = 400;
 /// See [`Strategy::try_penalty_m`].
-const TRY_PENALTY: f64 = 0.5;
+const TRY_PENALTY: f64 = 0.1;
 
 /// What to plan and how; `None` keeps what the problem file says.
 #[derive(Debug, Clone)]
@@ -241,6 +244,7 @@ pub fn strategy(
         extend: ExtendOptions { spacing_m: NODE_SPACING, ..ExtendOptions::default() },
         reroute: Some(Box::new(Detour::default())),
         try_penalty_m: TRY_PENALTY,
+        shorten: ShortenOptions { extensions: SHORTENING },
     })
 }
 

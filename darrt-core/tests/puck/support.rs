@@ -53,6 +53,7 @@ pub(crate) fn strategy(
         extend: ExtendOptions::default(),
         reroute: None,
         try_penalty_m: 0.0,
+        shorten: darrt_core::shorten::ShortenOptions::default(),
     }
 }
 

@@ -21,7 +21,7 @@ use crate::problem_file::ProblemFile;
 /// Every end but a verified plan that is written, with its exit code.
 pub(super) fn run(options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
     let problem = ProblemFile::open(&options.problem)?;
-    let files = Files::choose(options, &problem.name)?;
+    let files = Files::choose(options)?;
     let request = request(options, problem);
     let cancel = Cancel::new();
     listen(&cancel);
@@ -34,13 +34,12 @@ pub(super) fn run(options: &PlanOptions, output: &mut Output) -> Result<Exit, Fa
     }
     let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else { return Err(failed(&request, &result)) };
     let story = Story::of_plan(plan)?;
+    // First of all: a terminal that has gone away must not cost the plan.
+    files.write(plan, &story)?;
     if !options.quiet {
         output.print(&summary(&request, &result))?;
         output.print(&steps::table(&story))?;
         output.print(&check::words(proof))?;
-    }
-    files.write(plan, &story)?;
-    if !options.quiet {
         output.print(&files.words())?;
     }
     Ok(Exit::Solved)
@@ -99,8 +98,11 @@ struct Files {
 }
 
 impl Files {
-    fn choose(options: &PlanOptions, name: &str) -> Result<Self, Failure> {
-        let default = || PathBuf::from(format!("{}.plan.json", output::file_stem(name)));
+    fn choose(options: &PlanOptions) -> Result<Self, Failure> {
+        // Named after what the user named: a copy of a problem must not overwrite the plan of the original.
+        let asked = Path::new(&options.problem);
+        let stem = asked.file_stem().map_or_else(|| options.problem.clone(), |s| s.to_string_lossy().into_owned());
+        let default = || PathBuf::from(format!("{}.plan.json", output::file_stem(&stem)));
         let plan = options.output.clone().unwrap_or_else(default);
         let picture = match (&options.picture, options.no_picture) {
             (_, true) => None,
@@ -112,6 +114,14 @@ impl Files {
             Some(path) => Some((output::writable(&path)?, Format::of_path(&path)?)),
             None => None,
         };
+        let is_problem = |path: &Path| {
+            asked.canonicalize().is_ok_and(|problem| path.canonicalize().is_ok_and(|path| path == problem))
+        };
+        if let Some(path) =
+            [Some(&plan), picture.as_ref().map(|(path, _)| path)].into_iter().flatten().find(|p| is_problem(p))
+        {
+            return Err(Failure::input(format!("{}: is the problem file itself, it would be lost", path.display())));
+        }
         if picture.as_ref().is_some_and(|(path, _)| *path == plan) {
             let text = format!("{}: cannot be both the plan and the picture", plan.display());
             return Err(Failure::input(text));

@@ -64,6 +64,7 @@ fn check(change: impl FnOnce(&mut Parts<Bench>), sampler: Box<dyn Sampler<Bench>
         extend: ExtendOptions::default(),
         reroute: None,
         try_penalty_m: 0.0,
+        shorten: crate::shorten::ShortenOptions::default(),
     };
     match Problem::new(parts) {
         Ok(problem) => check_planner(&problem, &strategy, &options()),
@@ -216,6 +217,7 @@ fn cancelled(run: Solve) -> Result<(), Broken> {
         extend: ExtendOptions::default(),
         reroute: None,
         try_penalty_m: 0.0,
+        shorten: crate::shorten::ShortenOptions::default(),
     };
     let problem = Problem::new(parts)
         .map_err(|error| Broken::new("planner.problem: the problem is well formed", error.to_string(), "no error"))?;

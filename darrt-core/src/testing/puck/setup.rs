@@ -163,5 +163,6 @@ pub fn paper_strategy() -> Result<Strategy<PuckWorld>, Error> {
         extend: ExtendOptions::default(),
         reroute: None,
         try_penalty_m: 0.0,
+        shorten: crate::shorten::ShortenOptions::default(),
     })
 }
