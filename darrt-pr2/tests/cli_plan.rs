@@ -42,17 +42,26 @@ fn a_plan_is_printed_written_drawn_and_accepted() {
     let folder = tempfile::tempdir().unwrap();
     solved_problem(folder.path());
     let (printed, complaint) = run(folder.path(), &["plan", "easy.toml", "--seed", "3"], 0);
-    for words in ["solved in", "seed 3", "primitive", "waypoints", "verified: ", "plate1.plan.json", "plate1.html"] {
+    for words in ["solved in", "seed 3", "primitive", "waypoints", "verified: ", "easy.plan.json", "easy.html"] {
         assert!(printed.contains(words), "{words}: {printed}");
     }
     assert_eq!(complaint, "", "quiet when piped");
-    assert_eq!(files(folder.path()), ["easy.toml", "plate1.html", "plate1.plan.json"]);
-    let (printed, _) = run(folder.path(), &["check", "plate1.plan.json"], 0);
-    assert!(printed.contains("plate1.plan.json: accepted"), "{printed}");
-    let (printed, _) = run(folder.path(), &["show", "plate1.plan.json", "-o", "again.html"], 0);
+    assert_eq!(files(folder.path()), ["easy.html", "easy.plan.json", "easy.toml"]);
+    let (printed, _) = run(folder.path(), &["check", "easy.plan.json"], 0);
+    assert!(printed.contains("easy.plan.json: accepted"), "{printed}");
+    let (printed, _) = run(folder.path(), &["show", "easy.plan.json", "-o", "again.html"], 0);
     assert!(printed.contains("again.html"));
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
-    assert_eq!(read("again.html"), read("plate1.html"));
+    assert_eq!(read("again.html"), read("easy.html"));
+}
+
+#[test]
+fn a_plan_never_overwrites_its_problem() {
+    let folder = tempfile::tempdir().unwrap();
+    solved_problem(folder.path());
+    let (_, complaint) = run(folder.path(), &["plan", "easy.toml", "-o", "./easy.toml"], 2);
+    assert!(complaint.contains("easy.toml: is the problem file itself"), "{complaint}");
+    assert_eq!(files(folder.path()), ["easy.toml"]);
 }
 
 #[test]

@@ -36,6 +36,9 @@ impl Default for Strictness {
     }
 }
 
+/// Part of the clearance that a motion keeps between two states looked at, where it may come nearer than at them.
+pub(crate) const KEPT_BETWEEN: f64 = 0.99;
+
 /// Bodies of the robot, the objects and the scene, and the rules of touching.
 pub struct Surroundings {
     model: CollisionModel,
@@ -161,6 +164,25 @@ impl Surroundings {
             self.allow(state, contacts, &mut worker.allowed);
             self.pose_all(robot, state, worker);
             self.lower_bound(worker, &BodySet::ALL, &BodySet::ALL, 0.0)
+        });
+        hit.map(|_| ()).map_err(|hit| self.blame(&hit))
+    }
+
+    /// [`Surroundings::check`] with the clearance that a motion keeps between the states looked at.
+    ///
+    /// # Errors
+    /// The first pair found.
+    pub(crate) fn check_on_the_way<M: Manipulator>(
+        &self,
+        robot: &M,
+        state: &TabletopState<M>,
+        contacts: &Contacts,
+    ) -> Result<(), Blame> {
+        let clearance_m = KEPT_BETWEEN * self.strictness.clearance_m;
+        let hit = self.with_worker(|worker| {
+            self.allow(state, contacts, &mut worker.allowed);
+            self.pose_all(robot, state, worker);
+            self.lower_bound_at(worker, &BodySet::ALL, &BodySet::ALL, 0.0, clearance_m)
         });
         hit.map(|_| ()).map_err(|hit| self.blame(&hit))
     }
@@ -353,11 +375,20 @@ impl Surroundings {
         against: &BodySet,
         cap_m: f64,
     ) -> Result<f64, Hit> {
+        self.lower_bound_at(worker, moved, against, cap_m, self.strictness.clearance_m)
+    }
+
+    /// [`Surroundings::lower_bound`] with another clearance.
+    fn lower_bound_at(
+        &self,
+        worker: &mut Worker,
+        moved: &BodySet,
+        against: &BodySet,
+        cap_m: f64,
+        clearance_m: f64,
+    ) -> Result<f64, Hit> {
         let Worker { scratch, allowed, .. } = worker;
-        self.model.lower_bound(
-            scratch,
-            &Query { moved, against, allowed, clearance: self.strictness.clearance_m, cap: cap_m },
-        )
+        self.model.lower_bound(scratch, &Query { moved, against, allowed, clearance: clearance_m, cap: cap_m })
     }
 
     /// How far the motion's parameter may grow, at most `cap`, before anything in `moved` and `against` can come nearer

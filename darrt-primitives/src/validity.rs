@@ -23,7 +23,7 @@ use nalgebra::{Isometry3, Point2};
 
 use crate::manipulator::Manipulator;
 use crate::mode::Contacts;
-use crate::surroundings::{Surroundings, Worker};
+use crate::surroundings::{KEPT_BETWEEN, Surroundings, Worker};
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// The scene as seen by a table-top domain.
@@ -272,8 +272,9 @@ impl SceneValidity {
     ) -> Result<(), (f64, Blame)> {
         let around = &*self.surroundings;
         let strictness = around.strictness();
-        // Farther than this no pair is told apart; nearer than this every pair may go unseen.
-        let (cap, least) = (strictness.cap_m / leg.fastest, strictness.clearance_m / leg.fastest);
+        // Farther than this no pair is told apart; so far every pair may come nearer unseen.
+        let unseen_m = (1.0 - KEPT_BETWEEN) * strictness.clearance_m;
+        let (cap, least) = (strictness.cap_m / leg.fastest, unseen_m / leg.fastest);
         // Nothing touches up to here, and the rules were last found kept there.
         let (mut free, mut kept) = (t, t);
         loop {
@@ -300,7 +301,7 @@ impl SceneValidity {
 impl<M: Manipulator> Validity<Tabletop<M>> for SceneValidity {
     fn check(&self, m: &Tabletop<M>, state: &TabletopState<M>, contacts: &Contacts) -> Result<(), Blame> {
         Self::check_rules(m, state)?;
-        self.surroundings.check(m.manipulator(), state, contacts)
+        self.surroundings.check_on_the_way(m.manipulator(), state, contacts)
     }
 
     fn free_prefix(&self, m: &Tabletop<M>, instance: &Instance<Tabletop<M>>, from: &TabletopState<M>) -> FreePrefix {

@@ -90,7 +90,7 @@ pub struct PlanOptions {
     /// Attempts that run at the same time, 1 to 256; helps only with restarts
     #[arg(long, default_value_t = 1, value_name = "NUMBER", value_parser = RangedU64ValueParser::<usize>::new().range(1..=256))]
     pub threads: usize,
-    /// Write the plan here [default: PROBLEM.plan.json in the current folder]
+    /// Write the plan here [default: PROBLEM.plan.json in the current folder, without the problem's own ending]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Write the picture here, .html or .svg [default: beside the plan, .html]
