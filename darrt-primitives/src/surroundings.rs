@@ -23,8 +23,8 @@ use crate::tabletop::{Movable, Support, TabletopState};
 /// How strict the check is; metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Strictness {
-    /// Bodies nearer than this collide. Also the shortest distance that a motion advances at once, so it must be
-    /// positive: it is what the check gives away to be certain between states.
+    /// Bodies nearer than this collide. It must be positive: a motion gives a small part of it away between the states
+    /// looked at, so that it advances however near it passes.
     pub clearance_m: f64,
     /// Distances beyond this are not told apart: the farthest that a motion advances at once.
     pub cap_m: f64,
@@ -160,12 +160,7 @@ impl Surroundings {
     /// # Errors
     /// The first pair found.
     pub fn check<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, contacts: &Contacts) -> Result<(), Blame> {
-        let hit = self.with_worker(|worker| {
-            self.allow(state, contacts, &mut worker.allowed);
-            self.pose_all(robot, state, worker);
-            self.lower_bound(worker, &BodySet::ALL, &BodySet::ALL, 0.0)
-        });
-        hit.map(|_| ()).map_err(|hit| self.blame(&hit))
+        self.check_at(robot, state, contacts, self.strictness.clearance_m)
     }
 
     /// [`Surroundings::check`] with the clearance that a motion keeps between the states looked at.
@@ -178,7 +173,16 @@ impl Surroundings {
         state: &TabletopState<M>,
         contacts: &Contacts,
     ) -> Result<(), Blame> {
-        let clearance_m = KEPT_BETWEEN * self.strictness.clearance_m;
+        self.check_at(robot, state, contacts, KEPT_BETWEEN * self.strictness.clearance_m)
+    }
+
+    fn check_at<M: Manipulator>(
+        &self,
+        robot: &M,
+        state: &TabletopState<M>,
+        contacts: &Contacts,
+        clearance_m: f64,
+    ) -> Result<(), Blame> {
         let hit = self.with_worker(|worker| {
             self.allow(state, contacts, &mut worker.allowed);
             self.pose_all(robot, state, worker);

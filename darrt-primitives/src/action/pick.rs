@@ -8,7 +8,7 @@ use rand::{Rng, RngExt};
 
 use super::push::approach;
 use super::retreat::retreat;
-use super::stance::{Probe, Refused, Wanted, stance};
+use super::stance::{Probe, Refused, Wanted, at_end, stance};
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::grasp::rim::rim_is_graspable;
@@ -60,7 +60,7 @@ pub fn pick<M: Manipulator>(
         let mode = beside.opened_to(grasp.open_gap_m).ok_or(Infeasible::NoGrasp)?;
         let mut probe = Probe::new(m, from, mode);
         let open = straddling(object, &grasp);
-        if let Err(blame) = m.surroundings().check_hand(m.manipulator(), probe.state_mut(), &at_grasp, &open) {
+        if let Err(blame) = probe.check_hand(&at_grasp, &open) {
             why = Infeasible::Blocked(blame);
             continue;
         }
@@ -120,15 +120,13 @@ fn way_of<M: Manipulator>(
     if out.share < m.settings().least_line_share {
         return Err(Refused::Unreachable);
     }
-    let robot =
-        |arm: Option<&M::Joints>| arm.map(|arm| Configuration { base: q.base, arm: *arm }).ok_or(Refused::Unreachable);
-    probe.check(&robot(out.arms.last())?, &Contacts::default())?;
+    probe.check(&at_end(q.base, &out.arms)?, &Contacts::default())?;
     let [least, best] = movable.lift_m;
     let up = line::follow(m, &q.base, &q.arm, at_grasp, &(Vector3::z() * best));
     if up.share * best < least {
         return Err(Refused::Unreachable);
     }
-    check_lifted(m, picking, &robot(up.arms.last())?, probe)?;
+    check_lifted(m, picking, &at_end(q.base, &up.arms)?, probe)?;
     let in_ = out.arms.iter().rev().copied().chain([q.arm]).collect();
     Ok(Way { base: q.base, in_, up: up.arms })
 }
@@ -138,13 +136,13 @@ fn check_lifted<M: Manipulator>(
     m: &Tabletop<M>,
     picking: &Picking<'_>,
     lifted: &Configuration<M::Joints>,
-    probe: &mut Probe<'_, M>,
+    probe: &Probe<'_, M>,
 ) -> Result<(), Refused> {
-    let beside = probe.state_mut().mode.clone();
+    let beside = probe.state().mode.clone();
     let tool_from_object = picking.at_grasp.inverse() * picking.pose;
     let held = Held { object: picking.object, tool_from_object };
     let mode = beside.attached(held, picking.grasp.closed_gap_m).ok_or(Refused::Unreachable)?;
-    Ok(Probe::new(m, probe.state_mut(), mode).check(lifted, &Contacts::default())?)
+    Ok(Probe::new(m, probe.state(), mode).check(lifted, &Contacts::default())?)
 }
 
 fn assemble<M: Manipulator>(

@@ -8,7 +8,7 @@ use nalgebra::{Isometry3, Vector3};
 use rand::{Rng, RngExt};
 
 use super::retreat::retreat;
-use super::stance::{Probe, Refused, Wanted, stance};
+use super::stance::{Probe, Refused, Wanted, at_end, stance};
 use super::travel::travel;
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
@@ -49,24 +49,18 @@ pub fn place<M: Manipulator>(
     };
     let released = from.mode.released_on(surface, release_gap_m(m, from)).ok_or(Infeasible::NoGrasp)?;
     let mut why = Infeasible::Unreachable;
+    let mut before = Probe::new(m, from, from.mode.clone());
     let mut after = Probe::new(m, from, released);
     let letting_go = contacts(held.object, surface);
     let mut clear = 0;
     for _ in 0..YAW_DRAWS {
         let standing = standing_pose(m, &held, surface, target, rng).ok_or(Infeasible::OffSupport)?;
         let at_place = standing * held.tool_from_object.inverse();
-        if let Some(pose) = after.state_mut().objects.get_mut(held.object.index()) {
-            *pose = standing;
-        }
+        before.place(held.object, &standing);
+        after.place(held.object, &standing);
         // With the fingers closed as much as opened: the lower one moves beside the surface when it lets go.
-        let mut before = Probe::new(m, from, from.mode.clone());
-        if let Some(pose) = before.state_mut().objects.get_mut(held.object.index()) {
-            *pose = standing;
-        }
-        let hand_at = |probe: &mut Probe<'_, M>| {
-            m.surroundings().check_hand(m.manipulator(), probe.state_mut(), &at_place, &letting_go)
-        };
-        if let Err(blame) = hand_at(&mut before).and_then(|()| hand_at(&mut after)) {
+        let hand_at = |probe: &Probe<'_, M>| probe.check_hand(&at_place, &letting_go);
+        if let Err(blame) = hand_at(&before).and_then(|()| hand_at(&after)) {
             why = Infeasible::Blocked(blame);
             continue;
         }
@@ -126,8 +120,7 @@ fn way_of<M: Manipulator>(
     if out.share < m.settings().least_line_share {
         return Err(Refused::Unreachable);
     }
-    let high = *out.arms.last().ok_or(Refused::Unreachable)?;
-    before.check(&Configuration { base: q.base, arm: high }, &Contacts::default())?;
+    before.check(&at_end(q.base, &out.arms)?, &Contacts::default())?;
     let down = out.arms.iter().rev().copied().chain([q.arm]).collect();
     Ok(Way { base: q.base, down })
 }

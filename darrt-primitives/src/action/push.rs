@@ -7,7 +7,7 @@ use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
 use super::retreat::retreat;
-use super::stance::{Probe, Refused, Wanted, stance};
+use super::stance::{Probe, Refused, Wanted, at_end, stance};
 use super::travel::travel;
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
@@ -73,8 +73,7 @@ pub fn push<M: Manipulator>(
     let beside = from.mode.opened_to(settings.gap_m).and_then(|mode| mode.engaged_with(object));
     let mut probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
     let push = Pushing { object, pose, at_contact: &at_contact, end: &end };
-    let hand_is_free = m.surroundings().check_hand(m.manipulator(), probe.state_mut(), &at_contact, &contacts(object));
-    hand_is_free.map_err(Infeasible::Blocked)?;
+    probe.check_hand(&at_contact, &contacts(object)).map_err(Infeasible::Blocked)?;
     let way = stance(m, from, &wanted, rng, |q| way_of(m, q, &push, &mut probe))?;
     assemble(m, chain, &push, &way, rng)
 }
@@ -153,12 +152,10 @@ fn way_of<M: Manipulator>(
     if along.share * end.length < LEAST_PUSH_M.min(end.length) {
         return Err(Refused::Unreachable);
     }
-    let robot =
-        |arm: Option<&M::Joints>| arm.map(|arm| Configuration { base: q.base, arm: *arm }).ok_or(Refused::Unreachable);
-    place_object(probe, push.object, push.pose_at(along.share));
-    let at_end = probe.check(&robot(along.arms.last())?, &touching);
-    place_object(probe, push.object, *push.pose);
-    at_end?;
+    probe.place(push.object, &push.pose_at(along.share));
+    let pushed = probe.check(&at_end(q.base, &along.arms)?, &touching);
+    probe.place(push.object, push.pose);
+    pushed?;
     let back = line::follow(m, &q.base, &q.arm, at_contact, &(-ahead * settings.standoff_m));
     let standoff = *back.arms.last().filter(|_| back.share >= 1.0).ok_or(Refused::Unreachable)?;
     let mut behind = **at_contact;
@@ -167,15 +164,9 @@ fn way_of<M: Manipulator>(
     if up.share < m.settings().least_line_share {
         return Err(Refused::Unreachable);
     }
-    probe.check(&robot(up.arms.last())?, &Contacts::default())?;
+    probe.check(&at_end(q.base, &up.arms)?, &Contacts::default())?;
     let down = up.arms.iter().rev().copied().chain([standoff]).collect();
     Ok(Way { base: q.base, down, contact: q.arm, along: along.arms, share: along.share })
-}
-
-fn place_object<M: Manipulator>(probe: &mut Probe<'_, M>, object: ObjectId, at: Isometry3<f64>) {
-    if let Some(pose) = probe.state_mut().objects.get_mut(object.index()) {
-        *pose = at;
-    }
 }
 
 /// What a push may touch.

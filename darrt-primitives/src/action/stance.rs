@@ -3,6 +3,7 @@
 use darrt_core::domain::Domain;
 use darrt_core::primitive::Infeasible;
 use darrt_core::space::ComponentSpace;
+use darrt_core::state::ObjectId;
 use darrt_core::validity::Blame;
 use nalgebra::Isometry3;
 use rand::{Rng, RngExt};
@@ -79,6 +80,14 @@ pub fn stance<M: Manipulator, T>(
     Err(why)
 }
 
+/// The robot at `base` with its arm at the end of a line that may have none.
+///
+/// # Errors
+/// [`Refused::Unreachable`] if there is no such arm configuration.
+pub fn at_end<J: Copy>(base: [f64; 3], arms: &[J]) -> Result<Configuration<J>, Refused> {
+    arms.last().map(|arm| Configuration { base, arm: *arm }).ok_or(Refused::Unreachable)
+}
+
 /// A state to ask about: how it would be if the robot stood elsewhere.
 #[derive(Debug)]
 pub struct Probe<'a, M: Manipulator> {
@@ -94,9 +103,24 @@ impl<'a, M: Manipulator> Probe<'a, M> {
         Self { m, state }
     }
 
-    /// The state asked about last, with its objects where the next question wants them.
-    pub fn state_mut(&mut self) -> &mut TabletopState<M> {
-        &mut self.state
+    /// The state asked about last.
+    pub fn state(&self) -> &TabletopState<M> {
+        &self.state
+    }
+
+    /// Puts an object elsewhere for the next question.
+    pub fn place(&mut self, object: ObjectId, world_from_object: &Isometry3<f64>) {
+        if let Some(pose) = self.state.objects.get_mut(object.index()) {
+            *pose = *world_from_object;
+        }
+    }
+
+    /// Could the hand alone be at `world_from_tool`?
+    ///
+    /// # Errors
+    /// What is in its way.
+    pub fn check_hand(&self, world_from_tool: &Isometry3<f64>, contacts: &Contacts) -> Result<(), Blame> {
+        self.m.surroundings().check_hand(self.m.manipulator(), &self.state, world_from_tool, contacts)
     }
 
     /// Is nothing in the way with the robot at `q`, what it holds in its hand?
