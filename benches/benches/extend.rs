@@ -14,7 +14,8 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use darrt_benches::room::{grown, prepared};
 use darrt_benches::stream;
-use darrt_core::extend::extend_around;
+use darrt_core::budget::Interrupt;
+use darrt_core::extend::Extender;
 
 const COUNT: u64 = 64;
 
@@ -24,6 +25,8 @@ fn extend(c: &mut Criterion) {
     let draw = |i| strategy.sampler.sample(problem.domain(), problem.goal(), &mut stream(i));
     let targets: Vec<_> = (0..COUNT).map(draw).collect();
     let nodes = grown(&prepared, &strategy, 100, 64);
+    let (options, reroute) = (&strategy.extend, strategy.reroute.as_deref());
+    let extender = Extender { problem, options, reroute, interrupt: Interrupt::NEVER };
     let mut group = c.benchmark_group("extend");
     group.sample_size(20);
     group.throughput(Throughput::Elements(COUNT));
@@ -32,8 +35,7 @@ fn extend(c: &mut Criterion) {
             b.iter(|| {
                 for ((i, to), from) in (0..COUNT).zip(&targets).zip(from.iter().cycle()) {
                     let rng = &mut stream(COUNT + i);
-                    let around = strategy.reroute.as_deref();
-                    black_box(extend_around(problem, &strategy.extend, around, from, to, rng).reached.len());
+                    black_box(extender.extend(from, to, rng).reached.len());
                 }
             });
         });

@@ -15,7 +15,7 @@ impl Cancel {
         Self::default()
     }
 
-    /// Asks the planner to stop; it does so within one extension.
+    /// Asks the planner to stop; it does so within one instance of an extension, or one check of a verifier that asks.
     pub fn cancel(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
@@ -27,6 +27,8 @@ impl Cancel {
 }
 
 /// Limits on one call of [`solve`](crate::solve::solve). `None` means no limit of that kind.
+///
+/// When time is up, a plan that was found before is still verified; it is not made shorter any more.
 #[derive(Debug, Clone, Default)]
 pub struct Budget {
     /// Wall-clock time over all attempts.
@@ -70,6 +72,31 @@ impl fmt::Display for Stop {
             Self::Cancelled => "cancelled",
             Self::Overtaken => "overtaken by another attempt",
         })
+    }
+}
+
+/// Asked between two pieces of work whether to stop, and why.
+#[derive(Clone, Copy)]
+pub struct Interrupt<'a>(&'a (dyn Fn() -> Option<Stop> + Sync));
+
+impl<'a> Interrupt<'a> {
+    /// Never stops.
+    pub const NEVER: Interrupt<'static> = Interrupt(&|| None);
+
+    /// Stops as soon as `ask` gives a reason.
+    pub fn new(ask: &'a (dyn Fn() -> Option<Stop> + Sync)) -> Self {
+        Self(ask)
+    }
+
+    /// Why to stop, if it is time to.
+    pub fn stop(self) -> Option<Stop> {
+        (self.0)()
+    }
+}
+
+impl fmt::Debug for Interrupt<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Interrupt").field(&self.stop()).finish()
     }
 }
 

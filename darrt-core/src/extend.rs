@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rand::Rng;
 use smallvec::SmallVec;
 
+use crate::budget::Interrupt;
 use crate::domain::Domain;
 use crate::error::{Error, in_range};
 use crate::motion::Instance;
@@ -83,46 +84,81 @@ pub fn extend_towards<D: Domain>(
     to: &PartialState<D>,
     rng: &mut dyn Rng,
 ) -> Extension<D> {
-    extend_around(problem, options, None, from, to, rng)
+    let extender = Extender { problem, options, reroute: None, interrupt: Interrupt::NEVER };
+    extender.extend(from, to, rng)
 }
 
-/// [`extend_towards`], looking for a way around where a motion is blocked.
-pub fn extend_around<D: Domain>(
-    problem: &Problem<D>,
-    options: &ExtendOptions,
-    reroute: Option<&dyn Reroute<D>>,
-    from: &State<D>,
-    to: &PartialState<D>,
-    rng: &mut dyn Rng,
-) -> Extension<D> {
-    let m = problem.domain();
-    let e = path(m, problem.primitives(), from, to, options.max_depth, rng);
-    let mut prefixes = Prefixes { problem, e: &e, known: e.instances.iter().map(|_| None).collect() };
-    let mut reached = Vec::new();
-    let mut blocked: Option<(usize, Blame)> = None;
-    for index in 0..e.instances.len() {
-        let (Some((primitive, instance)), Some(start)) = (e.instances.get(index), e.states.get(index)) else { break };
-        let (primitive, mut instance) = (*primitive, Arc::clone(instance));
-        let mut free = prefixes.of(index);
-        if free.blame.is_some()
-            && let Some(r) = reroute.filter(|r| r.is_free_to_turn(&instance))
-            && prefixes.is_worth_a_detour(r, index)
-            && let Some(around) = r.reroute(m, problem.validity(), &instance, start, rng)
-        {
-            instance = Arc::new(around);
-            free = problem.validity().free_prefix(m, &instance, start);
-        }
-        discretise(m, &instance, primitive, free.fraction, options.spacing_m, start, &mut reached);
-        let is_short = free.fraction.is_nan() || free.fraction < 1.0;
-        if let Some(blame) = free.blame.or_else(|| is_short.then(unexplained)) {
-            blocked = Some((index, blame));
-            break;
-        }
+/// What all extensions of one search have in common.
+pub struct Extender<'a, D: Domain> {
+    /// What is planned.
+    pub problem: &'a Problem<D>,
+    /// How extensions are discretised.
+    pub options: &'a ExtendOptions,
+    /// How a way around is looked for where a motion is blocked; `None`: it is not.
+    pub reroute: Option<&'a dyn Reroute<D>>,
+    /// Asked before every instance of an extension.
+    pub interrupt: Interrupt<'a>,
+}
+
+impl<D: Domain> Clone for Extender<'_, D> {
+    fn clone(&self) -> Self {
+        *self
     }
-    let buckets = buckets(&e, blocked.as_ref().map(|(index, blame)| (*index, blame.kind)));
-    let is_met = blocked.is_none() && e.end == PathEnd::Met;
-    let blame = blocked.map(|(_, blame)| blame).or_else(|| last_block(&e));
-    Extension { reached, is_met, blame, buckets }
+}
+
+impl<D: Domain> Copy for Extender<'_, D> {}
+
+impl<D: Domain> std::fmt::Debug for Extender<'_, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Extender").field("options", self.options).finish_non_exhaustive()
+    }
+}
+
+impl<D: Domain> Extender<'_, D> {
+    /// Extends `from` towards `to`. Pure but for `rng` and the interrupt.
+    pub fn extend(&self, from: &State<D>, to: &PartialState<D>, rng: &mut dyn Rng) -> Extension<D> {
+        let Self { problem, options, reroute, interrupt } = *self;
+        let m = problem.domain();
+        let e = path(m, problem.primitives(), from, to, options.max_depth, rng);
+        let mut prefixes = Prefixes { problem, e: &e, known: e.instances.iter().map(|_| None).collect() };
+        let mut reached = Vec::new();
+        let mut blocked: Option<(usize, Blame)> = None;
+        let mut cut = None;
+        for index in 0..e.instances.len() {
+            if interrupt.stop().is_some() {
+                cut = Some(index);
+                break;
+            }
+            let (Some((primitive, instance)), Some(start)) = (e.instances.get(index), e.states.get(index)) else {
+                break;
+            };
+            let (primitive, mut instance) = (*primitive, Arc::clone(instance));
+            let mut free = prefixes.of(index);
+            if free.blame.is_some()
+                && let Some(r) = reroute.filter(|r| r.is_free_to_turn(&instance))
+                && prefixes.is_worth_a_detour(r, index)
+                && let Some(around) = r.reroute(m, problem.validity(), &instance, start, rng)
+            {
+                instance = Arc::new(around);
+                free = problem.validity().free_prefix(m, &instance, start);
+            }
+            discretise(m, &instance, primitive, free.fraction, options.spacing_m, start, &mut reached);
+            let is_short = free.fraction.is_nan() || free.fraction < 1.0;
+            if let Some(blame) = free.blame.or_else(|| is_short.then(unexplained)) {
+                blocked = Some((index, blame));
+                break;
+            }
+        }
+        let end = match (&blocked, cut) {
+            (Some((index, blame)), _) => Some((*index, Bucket::from(blame.kind), Bucket::Behind)),
+            (None, Some(index)) => Some((index, Bucket::Budget, Bucket::Budget)),
+            (None, None) => None,
+        };
+        let buckets = buckets(&e, end);
+        let is_met = end.is_none() && e.end == PathEnd::Met;
+        let blame = blocked.map(|(_, blame)| blame).or_else(|| last_block(&e));
+        Extension { reached, is_met, blame, buckets }
+    }
 }
 
 /// What the primitives last found in the way, if the path ended for want of one that could go on.
@@ -206,17 +242,18 @@ fn discretise<D: Domain>(
     }
 }
 
-/// The one bucket of every primitive: the furthest it got in this extension.
-fn buckets<D: Domain>(e: &Path<D>, blocked: Option<(usize, BlockKind)>) -> SmallVec<[Bucket; 8]> {
+/// The one bucket of every primitive: the furthest it got in this extension. `end` is the instance at which the extension
+/// ended before its path did, the bucket of the primitive that it is from, and that of the primitives behind it.
+fn buckets<D: Domain>(e: &Path<D>, end: Option<(usize, Bucket, Bucket)>) -> SmallVec<[Bucket; 8]> {
     let mut buckets: SmallVec<[Bucket; 8]> =
         e.useful.iter().map(|useful| if *useful { Bucket::NotChosen } else { Bucket::NotUseful }).collect();
     for (primitive, trial) in &e.trials {
         let bucket = match trial {
             Trial::Infeasible(why) => Bucket::from(why),
             Trial::NoProgress => Bucket::NoProgress,
-            Trial::Propagated { first, last } => match blocked {
-                Some((at, _)) if at < *first => Bucket::Behind,
-                Some((at, kind)) if at < *last => Bucket::from(kind),
+            Trial::Propagated { first, last } => match end {
+                Some((at, _, behind)) if at < *first => behind,
+                Some((at, bucket, _)) if at < *last => bucket,
                 _ => Bucket::Accepted,
             },
         };
@@ -225,7 +262,7 @@ fn buckets<D: Domain>(e: &Path<D>, blocked: Option<(usize, BlockKind)>) -> Small
         }
     }
     if e.end == PathEnd::Depth
-        && blocked.is_none()
+        && end.is_none()
         && let Some((primitive, _)) = e.trials.last()
         && let Some(slot) = buckets.get_mut(usize::from(*primitive))
     {

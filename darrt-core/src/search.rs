@@ -1,9 +1,9 @@
 //! DARRT (Algorithm 1 of the paper): one attempt from the initial state.
 
-use crate::budget::Stop;
+use crate::budget::{Interrupt, Stop};
 use crate::distance::Distance;
 use crate::domain::Domain;
-use crate::extend::{ExtendOptions, Extension, extend_around};
+use crate::extend::{ExtendOptions, Extender, Extension};
 use crate::observe::accounts::Accounts;
 use crate::partial::PartialState;
 use crate::plan::Plan;
@@ -46,6 +46,7 @@ impl<D: Domain> std::fmt::Debug for Strategy<D> {
 pub struct Darrt<'p, D: Domain> {
     problem: &'p Problem<D>,
     strategy: &'p Strategy<D>,
+    interrupt: Interrupt<'p>,
     tree: Tree<D>,
     accounts: Accounts,
     seed: u64,
@@ -67,7 +68,7 @@ pub struct Step<D: Domain> {
     pub solution: Option<Solution<D>>,
     /// Set when a state satisfied the goal but the verifier refused.
     pub refusal: Option<Refusal>,
-    /// Set when the tree is full.
+    /// Set when the tree is full, or when the verifier was cancelled.
     pub stop: Option<Stop>,
 }
 
@@ -80,6 +81,7 @@ impl<'p, D: Domain> Darrt<'p, D> {
         let mut darrt = Self {
             problem,
             strategy,
+            interrupt: Interrupt::NEVER,
             tree: Tree::rooted_at(problem.start().clone()),
             accounts: Accounts::new(names),
             seed,
@@ -93,6 +95,17 @@ impl<'p, D: Domain> Darrt<'p, D> {
         darrt
     }
 
+    /// The same, asking `interrupt` within an iteration, and while a plan is made shorter, whether to go on.
+    #[must_use]
+    pub fn interrupted_by(self, interrupt: Interrupt<'p>) -> Self {
+        Self { interrupt, ..self }
+    }
+
+    fn extender(&self) -> Extender<'p, D> {
+        let Self { problem, strategy, interrupt, .. } = *self;
+        Extender { problem, options: &strategy.extend, reroute: strategy.reroute.as_deref(), interrupt }
+    }
+
     /// One iteration of the loop of Algorithm 1.
     pub fn step(&mut self) -> Step<D> {
         let m = self.problem.domain();
@@ -103,8 +116,7 @@ impl<'p, D: Domain> Darrt<'p, D> {
         let s = self.strategy.sampler.sample(m, self.problem.goal(), draw);
         let t = self.strategy.distance.nearest(m, &self.tree, &s).unwrap_or(Tree::<D>::ROOT);
         let from = self.tree.node(t).map_or(self.problem.start(), |node| &node.state);
-        let extension =
-            extend_around(self.problem, &self.strategy.extend, self.strategy.reroute.as_deref(), from, &s, choose);
+        let extension = self.extender().extend(from, &s, choose);
         let (is_met, buckets) = (extension.is_met, extension.buckets.clone());
         self.tree.penalise(t, self.strategy.try_penalty_m);
         let step = self.absorb(t, extension);
@@ -146,6 +158,11 @@ impl<'p, D: Domain> Darrt<'p, D> {
                         // extension towards the goal would begin and end there.
                         self.tree.remove_last();
                         step.added -= 1;
+                        // It may have given up only because nobody waits for its answer any more.
+                        if self.interrupt.stop() == Some(Stop::Cancelled) {
+                            step.stop = Some(Stop::Cancelled);
+                            return step;
+                        }
                         self.accounts.refused += 1;
                         step.refusal = Some(refusal);
                         return step;
@@ -160,13 +177,15 @@ impl<'p, D: Domain> Darrt<'p, D> {
         let lost = || Refusal { step: None, at: 0.0, reason: "the tree has no such node".to_owned() };
         let plan = Plan::to_node(&self.tree, node).ok_or_else(lost)?;
         let p = self.problem;
-        let Strategy { extend, reroute, .. } = self.strategy;
         let rng = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Shorten);
         // A shorter plan that the verifier refuses is no reason to give up the longer one.
-        if let Some(short) = shorten(p, extend, reroute.as_deref(), &plan, self.strategy.shorten, rng)
+        if let Some(short) = shorten(&self.extender(), &plan, self.strategy.shorten, rng)
             && let Ok(solution) = Solution::prove(p.domain(), p.start(), p.goal(), p.verifier(), short)
         {
             return Ok(solution);
+        }
+        if self.interrupt.stop() == Some(Stop::Cancelled) {
+            return Err(Refusal { step: None, at: 0.0, reason: "cancelled".to_owned() });
         }
         Solution::prove(p.domain(), p.start(), p.goal(), p.verifier(), plan)
     }

@@ -1,23 +1,24 @@
 //! A shorter plan through some of the placements of the objects that a plan goes through.
 //!
 //! A tree wanders: it pushes here, then there, then back. Every placement of the objects on the way of a found plan is a
-//! target that can be reached, so from each the farthest later one is looked for that one extension reaches. Nothing of
-//! the old plan is replayed: every step is propagated and checked anew, and the verifier judges the whole.
+//! target that can be reached, so from each a later one is looked for that one extension reaches. Where none is found the
+//! old steps stay. The verifier judges the whole.
 
 use std::sync::Arc;
 
 use rand::Rng;
 
 use crate::domain::Domain;
-use crate::extend::{ExtendOptions, extend_around};
+use crate::extend::{Extender, Reached};
 use crate::partial::PartialState;
 use crate::plan::{Plan, Step};
-use crate::problem::Problem;
-use crate::reroute::Reroute;
 use crate::state::{ObjectId, State};
 
 /// How often one extension is drawn before the next nearer target is tried.
 const DRAWS: usize = 2;
+
+/// The plan is as short as it gets when this many rounds found nothing.
+const FRUITLESS_ROUNDS: usize = 2;
 
 /// How much effort goes into a shorter plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -26,103 +27,153 @@ pub struct ShortenOptions {
     pub extensions: usize,
 }
 
-/// A plan to the goal with fewer steps than `plan`, if one was found. Not verified.
+/// A plan to the goal with fewer steps than `plan`, if one was found before the extender is interrupted. Not verified.
 pub fn shorten<D: Domain>(
-    problem: &Problem<D>,
-    extend: &ExtendOptions,
-    reroute: Option<&dyn Reroute<D>>,
+    extender: &Extender<'_, D>,
     plan: &Plan<D>,
     options: ShortenOptions,
     rng: &mut dyn Rng,
 ) -> Option<Plan<D>> {
-    let m = problem.domain();
     let mut left = options.extensions;
     let mut best: Option<Plan<D>> = None;
-    while left > 0 {
+    let mut fruitless = 0;
+    while left > 0 && fruitless < FRUITLESS_ROUNDS && extender.interrupt.stop().is_none() {
         let old = best.as_ref().unwrap_or(plan);
-        let targets = placements(m, old);
-        let count = old.steps().len();
-        match retrace(problem, extend, reroute, &targets, &mut left, rng) {
-            Some(found) if found.len() < count => best = Some(Plan::new(problem.start().clone(), found)),
-            // As short as this gets.
-            Some(_) => break,
-            // Another round draws other ways.
-            None => {}
+        let found = retrace(extender, old, &mut left, rng);
+        if found.len() < old.steps().len() {
+            best = Some(Plan::new(plan.start().clone(), found));
+            fruitless = 0;
+        } else {
+            fruitless += 1;
         }
     }
     best
 }
 
-/// Where the objects that the plan moves stand after each step that moves one.
-fn placements<D: Domain>(m: &D, plan: &Plan<D>) -> Vec<PartialState<D>> {
+/// Where the objects stand after a step that moves one.
+struct Placement<D: Domain> {
+    /// Index of the step.
+    step: usize,
+    /// The objects that the plan has moved so far, where they are.
+    target: PartialState<D>,
+}
+
+fn placements<D: Domain>(m: &D, plan: &Plan<D>) -> Vec<Placement<D>> {
     let start = plan.start();
     let mut before = start.clone();
-    let mut targets = Vec::new();
-    for index in 0..plan.steps().len() {
-        let Some(after) = plan.at(m, index, 1.0) else { break };
+    let mut placements = Vec::new();
+    for step in 0..plan.steps().len() {
+        let Some(after) = plan.at(m, step, 1.0) else { break };
         if after.objects != before.objects {
             let ids = (0..after.objects.len()).map(ObjectId::new);
             let moved = ids.filter(|id| after.object(*id) != start.object(*id));
-            let target = moved.filter_map(|id| Some((id, after.object(id)?.clone())));
-            targets.push(target.fold(PartialState::anywhere(m), |target, (id, at)| target.with_object(id, at)));
+            let named = moved.filter_map(|id| Some((id, after.object(id)?.clone())));
+            let target = named.fold(PartialState::anywhere(m), |target, (id, at)| target.with_object(id, at));
+            placements.push(Placement { step, target });
         }
         before = after;
     }
-    targets
+    placements
 }
 
-/// From the start to the goal, each time to the farthest of the targets that an extension reaches. `None` if that fails,
-/// or if the extensions are used up.
-fn retrace<D: Domain>(
-    problem: &Problem<D>,
-    extend: &ExtendOptions,
-    reroute: Option<&dyn Reroute<D>>,
-    targets: &[PartialState<D>],
+/// The last place at which the new plan lies on the old one.
+#[derive(Clone, Copy)]
+struct Anchor {
+    /// How many steps the new plan has there.
+    kept: usize,
+    /// The step of the old plan that begins there.
+    step: usize,
+    /// How many placements lie behind.
+    done: usize,
+}
+
+/// From the start to the goal: leaps from placement to placement where an extension reaches one, and keeps the old
+/// steps where none does.
+fn retrace<D: Domain>(extender: &Extender<'_, D>, old: &Plan<D>, left: &mut usize, rng: &mut dyn Rng) -> Vec<Step<D>> {
+    let m = extender.problem.domain();
+    let placements = placements(m, old);
+    let mut steps: Vec<Step<D>> = Vec::new();
+    let mut here = old.start().clone();
+    let mut done = 0;
+    let mut anchor = Anchor { kept: 0, step: 0, done: 0 };
+    loop {
+        let ahead = placements.get(done..).unwrap_or_default();
+        if let Some(leap) = leap(extender, &here, ahead, left, rng) {
+            append(&mut steps, &mut here, leap.reached);
+            match leap.passed {
+                Some(passed) => done += passed,
+                None => return steps,
+            }
+            continue;
+        }
+        steps.truncate(anchor.kept);
+        let known = |last: usize| old.steps().get(anchor.step..=last).unwrap_or_default().iter().cloned();
+        let kept = placements.get(anchor.done).and_then(|next| Some((next.step, old.at(m, next.step, 1.0)?)));
+        let Some((last, state)) = kept else {
+            steps.extend(known(old.steps().len().saturating_sub(1)));
+            return steps;
+        };
+        steps.extend(known(last));
+        here = state;
+        done = anchor.done + 1;
+        anchor = Anchor { kept: steps.len(), step: last + 1, done };
+    }
+}
+
+/// An extension to a placement, or to the goal.
+struct Leap<D: Domain> {
+    reached: Vec<Reached<D>>,
+    /// How many placements lie behind now; `None` at the goal.
+    passed: Option<usize>,
+}
+
+/// The goal if one extension reaches it, else the placement half as far ahead, and so on down to the next.
+fn leap<D: Domain>(
+    extender: &Extender<'_, D>,
+    here: &State<D>,
+    ahead: &[Placement<D>],
     left: &mut usize,
     rng: &mut dyn Rng,
-) -> Option<Vec<Step<D>>> {
+) -> Option<Leap<D>> {
+    let Extender { problem, interrupt, .. } = *extender;
     let m = problem.domain();
-    let mut steps: Vec<Step<D>> = Vec::new();
-    let mut here = problem.start().clone();
-    let mut done = 0;
-    loop {
-        // The goal itself is the farthest target.
-        let mut reached = None;
-        for next in (done..=targets.len()).rev() {
-            for _ in 0..DRAWS {
-                *left = left.checked_sub(1)?;
-                let target = match targets.get(next) {
-                    Some(target) => target.clone(),
-                    None => problem.goal().sample(m, rng)?,
-                };
-                let extension = extend_around(problem, extend, reroute, &here, &target, rng);
-                let is_goal = |state: &State<D>| problem.goal().is_satisfied(m, state);
-                let to_goal = extension.reached.iter().position(|r| is_goal(&r.state));
-                if extension.is_met || to_goal.is_some() {
-                    reached = Some((next, extension, to_goal));
-                    break;
+    let mut count = ahead.len() + 1;
+    while count > 0 {
+        for _ in 0..DRAWS {
+            *left = left.checked_sub(1)?;
+            if interrupt.stop().is_some() {
+                return None;
+            }
+            let sampled;
+            let target = match ahead.get(count - 1) {
+                Some(placement) => &placement.target,
+                None => {
+                    sampled = problem.goal().sample(m, rng)?;
+                    &sampled
                 }
+            };
+            let mut extension = extender.extend(here, target, rng);
+            let is_goal = |reached: &Reached<D>| problem.goal().is_satisfied(m, &reached.state);
+            if let Some(last) = extension.reached.iter().position(is_goal) {
+                extension.reached.truncate(last + 1);
+                return Some(Leap { reached: extension.reached, passed: None });
             }
-            if reached.is_some() {
-                break;
+            if extension.is_met && count <= ahead.len() {
+                return Some(Leap { reached: extension.reached, passed: Some(count) });
             }
         }
-        let (next, extension, to_goal) = reached?;
-        let kept = to_goal.map_or(extension.reached.len(), |last| last + 1);
-        for r in extension.reached.into_iter().take(kept) {
-            match steps.last_mut().filter(|last| Arc::ptr_eq(&last.instance, &r.instance)) {
-                Some(last) => last.until = r.t,
-                None => steps.push(Step { instance: r.instance, until: r.t, primitive: r.primitive }),
-            }
-            here = r.state;
+        count /= 2;
+    }
+    None
+}
+
+/// Adds what an extension reached, the states of one instance as one step.
+fn append<D: Domain>(steps: &mut Vec<Step<D>>, here: &mut State<D>, reached: Vec<Reached<D>>) {
+    for r in reached {
+        match steps.last_mut().filter(|last| Arc::ptr_eq(&last.instance, &r.instance)) {
+            Some(last) => last.until = r.t,
+            None => steps.push(Step { instance: r.instance, until: r.t, primitive: r.primitive }),
         }
-        if to_goal.is_some() {
-            return Some(steps);
-        }
-        done = next + 1;
-        // Beyond the last target only the goal is left, and this extension went there without satisfying it.
-        if done > targets.len() {
-            return None;
-        }
+        *here = r.state;
     }
 }

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::budget::{Budget, Cancel, Clock, Stop};
+use crate::budget::{Budget, Cancel, Clock, Interrupt, Stop};
 use crate::domain::Domain;
 use crate::observe::accounts::Accounts;
 use crate::observe::{Event, Observer};
@@ -198,7 +198,9 @@ impl<D: Domain> Shared<'_, D> {
 
     fn attempt(&self, number: u64, share: u64) -> Attempt<D> {
         let limit = self.options.budget.nodes.unwrap_or(usize::MAX);
-        let mut darrt = Darrt::new(self.problem, self.strategy, self.options.seed, number, limit);
+        let ask = || self.stop().or_else(|| self.is_overtaken(number).then_some(Stop::Overtaken));
+        let darrt = Darrt::new(self.problem, self.strategy, self.options.seed, number, limit);
+        let mut darrt = darrt.interrupted_by(Interrupt::new(&ask));
         let mut found = Found { solution: None, last_refusal: None };
         self.tell(&Event::AttemptStarted { attempt: number });
         match darrt.prove_start() {

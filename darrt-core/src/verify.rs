@@ -32,7 +32,7 @@ impl fmt::Display for Refusal {
 
 /// Judges plans, independently of the planner and of the primitives.
 pub trait Verifier<D: Domain>: Send + Sync {
-    /// Accepts or refuses.
+    /// Accepts or refuses. One that takes long should give up, with any refusal, when the search is cancelled.
     ///
     /// # Errors
     /// The first [`Refusal`] found.

@@ -68,9 +68,9 @@ impl Body {
         if self.name.is_empty() {
             return Err(GeomError::EmptyName { what: "body" });
         }
-        check::count(&format!("parts of `{}`", self.name), self.parts.len(), 1, MAXIMUM_PARTS)?;
+        check::count(format_args!("parts of `{}`", self.name), self.parts.len(), 1, MAXIMUM_PARTS)?;
         for (i, part) in self.parts.iter().enumerate() {
-            check::pose(&format!("part {i} of `{}`", self.name), &part.body_from_shape)?;
+            check::pose(format_args!("part {i} of `{}`", self.name), &part.body_from_shape)?;
         }
         Ok(())
     }

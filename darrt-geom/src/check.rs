@@ -1,7 +1,8 @@
-//! Checks shared by the constructors of this crate.
+//! Checks shared by the constructors of this crate. A name is only put together when something is wrong.
 
 use crate::error::GeomError;
 use nalgebra::{Isometry3, Point3};
+use std::fmt::Display;
 
 /// Smallest length of a shape, in metres.
 pub const MINIMUM_LENGTH: f64 = 1e-6;
@@ -9,42 +10,42 @@ pub const MINIMUM_LENGTH: f64 = 1e-6;
 pub const MAXIMUM_LENGTH: f64 = 1e4;
 
 /// `value`, when it is finite and in `[minimum, maximum]`.
-pub(crate) fn in_range(name: &str, value: f64, minimum: f64, maximum: f64) -> Result<f64, GeomError> {
+pub(crate) fn in_range(name: impl Display + Copy, value: f64, minimum: f64, maximum: f64) -> Result<f64, GeomError> {
     if !value.is_finite() {
-        return Err(GeomError::NotFinite { name: name.to_owned(), value });
+        return Err(GeomError::NotFinite { name: name.to_string(), value });
     }
     if value < minimum || value > maximum {
-        return Err(GeomError::OutOfRange { name: name.to_owned(), value, minimum, maximum });
+        return Err(GeomError::OutOfRange { name: name.to_string(), value, minimum, maximum });
     }
     Ok(value)
 }
 
 /// A length of a shape: in `[MINIMUM_LENGTH, MAXIMUM_LENGTH]` metres.
-pub(crate) fn length(name: &str, value: f64) -> Result<f64, GeomError> {
+pub(crate) fn length(name: impl Display + Copy, value: f64) -> Result<f64, GeomError> {
     in_range(name, value, MINIMUM_LENGTH, MAXIMUM_LENGTH)
 }
 
 /// A coordinate: in `[-MAXIMUM_LENGTH, MAXIMUM_LENGTH]` metres.
-pub(crate) fn coordinate(name: &str, value: f64) -> Result<f64, GeomError> {
+pub(crate) fn coordinate(name: impl Display + Copy, value: f64) -> Result<f64, GeomError> {
     in_range(name, value, -MAXIMUM_LENGTH, MAXIMUM_LENGTH)
 }
 
 /// A point whose coordinates are all in range.
-pub(crate) fn point(name: &str, p: &Point3<f64>) -> Result<(), GeomError> {
+pub(crate) fn point(name: impl Display + Copy, p: &Point3<f64>) -> Result<(), GeomError> {
     p.iter().try_for_each(|&x| coordinate(name, x).map(drop))
 }
 
 /// A pose with finite, bounded translation and a quaternion of length one (to 1e-6).
-pub(crate) fn pose(name: &str, pose: &Isometry3<f64>) -> Result<(), GeomError> {
+pub(crate) fn pose(name: impl Display + Copy, pose: &Isometry3<f64>) -> Result<(), GeomError> {
     point(name, &Point3::from(pose.translation.vector))?;
     let norm = pose.rotation.as_ref().norm();
-    in_range(&format!("quaternion length of {name}"), norm, 1.0 - 1e-6, 1.0 + 1e-6).map(drop)
+    in_range(format_args!("quaternion length of {name}"), norm, 1.0 - 1e-6, 1.0 + 1e-6).map(drop)
 }
 
 /// A list whose length is in `[minimum, maximum]`.
-pub(crate) fn count(name: &str, count: usize, minimum: usize, maximum: usize) -> Result<(), GeomError> {
+pub(crate) fn count(name: impl Display + Copy, count: usize, minimum: usize, maximum: usize) -> Result<(), GeomError> {
     if count < minimum || count > maximum {
-        return Err(GeomError::Count { name: name.to_owned(), count, minimum, maximum });
+        return Err(GeomError::Count { name: name.to_string(), count, minimum, maximum });
     }
     Ok(())
 }

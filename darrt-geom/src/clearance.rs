@@ -38,7 +38,7 @@ pub fn between(
 ) -> Result<Clearance, GeomError> {
     for (body, pose) in [(a, world_from_a), (b, world_from_b)] {
         body.check()?;
-        check::pose(&format!("pose of `{}`", body.name), pose)?;
+        check::pose(format_args!("pose of `{}`", body.name), pose)?;
     }
     let mut best =
         Clearance { distance: f64::INFINITY, first: Point3::origin(), second: Point3::origin(), parts: (0, 0) };

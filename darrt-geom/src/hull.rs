@@ -31,9 +31,9 @@ impl ConvexHull {
     /// the points are thinner in some direction than [`MINIMUM_THICKNESS_RATIO`] of their extent, or rounding keeps
     /// the finished hull from holding every point.
     pub fn new(name: &str, points: &[Point3<f64>]) -> Result<Self, GeomError> {
-        check::count(&format!("points of {name}"), points.len(), 4, MAXIMUM_POINTS)?;
+        check::count(format_args!("points of {name}"), points.len(), 4, MAXIMUM_POINTS)?;
         for (i, p) in points.iter().enumerate() {
-            check::point(&format!("point {i} of {name}"), p)?;
+            check::point(format_args!("point {i} of {name}"), p)?;
         }
         let size = check_thickness(name, points)?;
         let distinct = without_duplicates(points, size * 1e-9);

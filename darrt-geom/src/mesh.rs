@@ -33,12 +33,12 @@ impl TriangleMesh {
     /// When there are more than [`MAXIMUM_TRIANGLES`], none with an area, an index names no vertex, or a coordinate is not
     /// finite or beyond 1e4 m.
     pub fn new(name: &str, vertices: &[Point3<f64>], triangles: &[[u32; 3]]) -> Result<Self, GeomError> {
-        check::count(&format!("triangles of {name}"), triangles.len(), 1, MAXIMUM_TRIANGLES)?;
+        check::count(format_args!("triangles of {name}"), triangles.len(), 1, MAXIMUM_TRIANGLES)?;
         for (i, p) in vertices.iter().enumerate() {
-            check::point(&format!("vertex {i} of {name}"), p)?;
+            check::point(format_args!("vertex {i} of {name}"), p)?;
         }
         let (vertices, triangles) = compact(name, vertices, triangles)?;
-        check::count(&format!("triangles with an area of {name}"), triangles.len(), 1, MAXIMUM_TRIANGLES)?;
+        check::count(format_args!("triangles with an area of {name}"), triangles.len(), 1, MAXIMUM_TRIANGLES)?;
         let corners = vertices.iter().map(|p| convert::vector(&p.coords)).collect();
         let mesh = TriMesh::new(corners, triangles.clone()).map_err(|error| GeomError::Malformed {
             path: name.to_owned(),
@@ -59,7 +59,7 @@ impl TriangleMesh {
     pub fn from_file(path: &Path, scale: &Vector3<f64>) -> Result<Self, GeomError> {
         let shown = path.display().to_string();
         for factor in scale.iter() {
-            check::in_range(&format!("size of the scale of {shown}"), factor.abs(), 1e-9, check::MAXIMUM_LENGTH)?;
+            check::in_range(format_args!("size of the scale of {shown}"), factor.abs(), 1e-9, check::MAXIMUM_LENGTH)?;
         }
         let soup = read::soup(path)?;
         let scaled: Vec<_> = soup.vertices.iter().map(|p| Point3::from(p.coords.component_mul(scale))).collect();

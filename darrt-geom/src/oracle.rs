@@ -108,7 +108,7 @@ fn each_pair<'a>(
 ) -> Result<(), GeomError> {
     for posed in bodies {
         posed.body.check()?;
-        check::pose(&format!("pose of `{}`", posed.body.name), &posed.world_from_body)?;
+        check::pose(format_args!("pose of `{}`", posed.body.name), &posed.world_from_body)?;
     }
     for (i, first) in bodies.iter().enumerate() {
         for (j, second) in bodies.iter().enumerate().skip(i + 1) {

@@ -32,7 +32,7 @@ impl Scene {
     pub fn new(bodies: Vec<FixedBody>, surfaces: Vec<SupportSurface>) -> Result<Self, GeomError> {
         for fixed in &bodies {
             fixed.body.check()?;
-            check::pose(&format!("pose of `{}`", fixed.body.name), &fixed.world_from_body)?;
+            check::pose(format_args!("pose of `{}`", fixed.body.name), &fixed.world_from_body)?;
         }
         unique("bodies", bodies.iter().map(|fixed| &*fixed.body.name))?;
         unique("support surfaces", surfaces.iter().map(SupportSurface::name))?;

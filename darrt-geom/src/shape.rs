@@ -62,7 +62,7 @@ impl Shape {
     /// When a half extent is not finite or out of range.
     pub fn cuboid(half_extents: Vector3<f64>) -> Result<Self, GeomError> {
         for (axis, value) in ["x", "y", "z"].iter().zip(half_extents.iter()) {
-            check::length(&format!("half extent {axis} of a cuboid"), *value)?;
+            check::length(format_args!("half extent {axis} of a cuboid"), *value)?;
         }
         Ok(Self::Cuboid { half_extents })
     }

@@ -53,8 +53,8 @@ impl SupportSurface {
         if name.is_empty() {
             return Err(GeomError::EmptyName { what: "support surface" });
         }
-        check::coordinate(&format!("height of `{name}`"), z)?;
-        check::count(&format!("vertices of `{name}`"), vertices.len(), 3, MAXIMUM_VERTICES)?;
+        check::coordinate(format_args!("height of `{name}`"), z)?;
+        check::count(format_args!("vertices of `{name}`"), vertices.len(), 3, MAXIMUM_VERTICES)?;
         let vertices = polygon::normalise(&name, vertices)?;
         let outward = polygon::edges(&vertices)
             .map(|(a, b)| {
@@ -86,9 +86,9 @@ impl SupportSurface {
     ) -> Result<Self, GeomError> {
         let name = name.into();
         for length in size.iter() {
-            check::length(&format!("side of `{name}`"), *length)?;
+            check::length(format_args!("side of `{name}`"), *length)?;
         }
-        check::coordinate(&format!("yaw of `{name}`"), yaw)?;
+        check::coordinate(format_args!("yaw of `{name}`"), yaw)?;
         let turn = Rotation2::new(yaw);
         let half = size / 2.0;
         let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]

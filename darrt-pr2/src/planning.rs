@@ -23,13 +23,13 @@ use crate::export::Exporter;
 use crate::plan_file::{PlanFile, PlannerFacts, Step};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{DistanceName, PrimitiveName, ProblemFile, SamplerName, Sampling};
-use crate::verify::Proof;
+use crate::verify::{Proof, VerifyOptions, verify_unless};
 use crate::world::{self, Built, World, WorldState};
 
 /// Bound on the travel of any point of the robot between two nodes of the tree, metres; the hand moves about a third.
 const NODE_SPACING: f64 = 1.0;
 /// Extensions that are spent on a shorter plan.
-const SHORTENING: usize = 400;
+const SHORTENING: usize = 200;
 /// See [`Strategy::try_penalty_m`].
 const TRY_PENALTY: f64 = 0.1;
 
@@ -100,6 +100,7 @@ pub struct PlanResult {
 struct FileVerifier {
     exporter: Arc<Exporter>,
     accepted: Accepted,
+    cancel: Cancel,
 }
 
 /// The steps and proofs of all plans that were accepted: one for each thread that came to one, at most.
@@ -115,7 +116,7 @@ impl Verifier<World> for FileVerifier {
             nodes: 0,
         };
         let file = self.exporter.export(m, plan, 0, nobody);
-        match crate::verify::verify(&file) {
+        match verify_unless(&file, &VerifyOptions::default(), &self.cancel) {
             Ok(proof) => {
                 if let Ok(mut accepted) = self.accepted.lock() {
                     accepted.push((file.steps, proof));
@@ -136,19 +137,20 @@ pub struct Prepared {
     accepted: Accepted,
 }
 
-/// Builds and checks everything about a problem before the search.
+/// Builds and checks everything about a problem before the search. `cancel` ends the verifier's work.
 ///
 /// # Errors
 /// [`PlanningError`] with what cannot be used: a start outside limits or in collision, a blocked goal, a missing
 /// primitive, a robot or shape that cannot be built.
-pub fn prepare(file: &ProblemFile) -> Result<Prepared, PlanningError> {
+pub fn prepare(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, PlanningError> {
     check_companions(file)?;
     let Built { world, start, goal, scene } = world::build(file)?;
     let validity = SceneValidity::new(&world);
     crate::goal_check::check_goal(&world, &goal, &scene)?;
     let exporter = Arc::new(Exporter::new(file, &world)?);
     let accepted = Accepted::default();
-    let verifier = FileVerifier { exporter: Arc::clone(&exporter), accepted: Arc::clone(&accepted) };
+    let verifier =
+        FileVerifier { exporter: Arc::clone(&exporter), accepted: Arc::clone(&accepted), cancel: cancel.clone() };
     let problem = Problem::new(Parts {
         domain: world,
         start,
@@ -165,7 +167,7 @@ pub fn prepare(file: &ProblemFile) -> Result<Prepared, PlanningError> {
 /// # Errors
 /// [`PlanningError`] when the problem cannot be planned at all; see [`prepare`].
 pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer) -> Result<PlanResult, PlanningError> {
-    let prepared = prepare(&request.problem)?;
+    let prepared = prepare(&request.problem, cancel)?;
     let (sampler, distance) = chosen(request);
     let strategy = strategy(&request.problem.sampling, sampler, distance)?;
     let budget = &request.problem.budget;

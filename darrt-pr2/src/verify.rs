@@ -10,11 +10,13 @@
 //! | what may a step do, what may it touch? | `mode` |
 //! | what lies between two waypoints? | `motion` |
 //! | which solids may not touch, do they? | `stage`, `solid` |
+//! | when must a pair be looked at again? | `approach` |
 //! | is an object gripped, or pushed as pushes go? | `hand` |
 //! | does the plan start and end where it must? | `start`, `goal` |
 //!
 //! `docs/plan-format.md` states the rules for readers of plans.
 
+mod approach;
 mod goal;
 mod hand;
 mod judge;
@@ -31,6 +33,8 @@ mod world;
 pub use options::VerifyOptions;
 pub use refusal::{Refusal, RefusalKind};
 pub use stage::SmallestClearance;
+
+use darrt_core::budget::Cancel;
 
 use crate::plan_file::PlanFile;
 
@@ -62,9 +66,17 @@ pub fn verify(plan: &PlanFile) -> Result<Proof, Refusal> {
 /// # Errors
 /// As [`verify`]; also when an option is out of its range.
 pub fn verify_with(plan: &PlanFile, options: &VerifyOptions) -> Result<Proof, Refusal> {
+    verify_unless(plan, options, &Cancel::new())
+}
+
+/// [`verify_with`], given up as soon as `cancel` is called.
+///
+/// # Errors
+/// As [`verify_with`]; [`RefusalKind::Cancelled`] if it was given up.
+pub fn verify_unless(plan: &PlanFile, options: &VerifyOptions, cancel: &Cancel) -> Result<Proof, Refusal> {
     if let Some((name, value)) = options.flaw() {
         let text = format!("the verifier's option `{name}` is {value}, which is out of its range");
         return Err(Refusal::whole(RefusalKind::Malformed, text));
     }
-    judge::Judge::new(plan, options)?.run()
+    judge::Judge::new(plan, options, cancel)?.run()
 }

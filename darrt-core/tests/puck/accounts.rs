@@ -1,6 +1,7 @@
 //! The one bucket of every primitive in hand-made extensions.
 
-use darrt_core::extend::{ExtendOptions, Extension, extend_towards};
+use darrt_core::budget::{Interrupt, Stop};
+use darrt_core::extend::{ExtendOptions, Extender, Extension, extend_towards};
 use darrt_core::observe::Silent;
 use darrt_core::observe::accounts::{Accounts, Bucket};
 use darrt_core::partial::PartialState;
@@ -160,4 +161,29 @@ fn every_bucket_has_its_own_place_and_heading() {
         assert_eq!(bucket as usize, i);
         assert_eq!(Bucket::ALL.iter().filter(|b| b.heading() == bucket.heading()).count(), 1);
     }
+}
+
+#[test]
+fn what_an_interrupt_cuts_off_counts_as_budget() {
+    use std::sync::atomic::{AtomicU32, Ordering};
+    let problem = problem(small());
+    let target = PartialState::anywhere(problem.domain()).with_robot(problem.domain(), [0.5, 0.3]);
+    let target = target.with_object(id(0), [1.5, 1.0]);
+    let options = ExtendOptions::default();
+    let after = |instances: u32| {
+        let asked = AtomicU32::new(0);
+        let ask = || (asked.fetch_add(1, Ordering::Relaxed) >= instances).then_some(Stop::Cancelled);
+        let interrupt = Interrupt::new(&ask);
+        let extender = Extender { problem: &problem, options: &options, reroute: None, interrupt };
+        extender.extend(problem.start(), &target, &mut rng(0))
+    };
+    let whole = extend_towards(&problem, &options, problem.start(), &target, &mut rng(0));
+    assert!(whole.is_met);
+    let e = after(0);
+    assert_eq!(e.buckets[..], buckets(Bucket::Budget, Bucket::Budget));
+    assert!(!e.is_met && e.blame.is_none() && e.reached.is_empty());
+    let e = after(1);
+    assert_eq!(e.buckets[..], buckets(Bucket::Budget, Bucket::Budget), "the push has two instances");
+    assert!(!e.is_met && !e.reached.is_empty() && e.reached.len() < whole.reached.len());
+    assert!(after(100).is_met);
 }

@@ -19,6 +19,7 @@ mod problem_errors;
 #[cfg(test)]
 mod refusals;
 #[cfg(test)]
+mod shortened;
 mod solved;
 #[cfg(test)]
 mod stops;

@@ -30,7 +30,7 @@ impl CollisionModelBuilder {
     /// When the body or the pose is unfit (see [`Body::check`]), the name is taken, or there are already
     /// [`MAXIMUM_BODIES`] bodies.
     pub fn add_fixed(&mut self, body: &Body, world_from_body: &Isometry3<f64>) -> Result<BodyIndex, GeomError> {
-        check::pose(&format!("pose of `{}`", body.name), world_from_body)?;
+        check::pose(format_args!("pose of `{}`", body.name), world_from_body)?;
         self.add(body, Some(*world_from_body))
     }
 

@@ -113,7 +113,7 @@ fn keep(line: &str, kept: &mut String) {
 
 /// Adds a triangle with three vertices of its own.
 fn push(shown: &str, soup: &mut Soup, corners: [Point3<f64>; 3]) -> Result<(), GeomError> {
-    check::count(&format!("triangles of {shown}"), soup.triangles.len() + 1, 1, MAXIMUM_TRIANGLES)?;
+    check::count(format_args!("triangles of {shown}"), soup.triangles.len() + 1, 1, MAXIMUM_TRIANGLES)?;
     // Bounded by the line above, so the index fits.
     let first = u32::try_from(soup.vertices.len()).unwrap_or(u32::MAX);
     soup.vertices.extend(corners);

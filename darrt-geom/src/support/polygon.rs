@@ -10,8 +10,8 @@ const MINIMUM_AREA: f64 = 1e-9;
 /// The vertices counter-clockwise, once the polygon is known to be simple.
 pub(super) fn normalise(name: &str, vertices: &[Point2<f64>]) -> Result<Vec<Point2<f64>>, GeomError> {
     for (i, p) in vertices.iter().enumerate() {
-        check::coordinate(&format!("x of vertex {i} of `{name}`"), p.x)?;
-        check::coordinate(&format!("y of vertex {i} of `{name}`"), p.y)?;
+        check::coordinate(format_args!("x of vertex {i} of `{name}`"), p.x)?;
+        check::coordinate(format_args!("y of vertex {i} of `{name}`"), p.y)?;
     }
     let degenerate =
         |measure, value, minimum| Err(GeomError::Degenerate { name: name.to_owned(), measure, value, minimum });

@@ -5,8 +5,10 @@ mod changes;
 mod limits;
 mod moment;
 
+use darrt_core::budget::Cancel;
 use nalgebra::{Isometry3, Vector2};
 
+use super::approach::{Approach, Movers};
 use super::goal;
 use super::hand::{PushCore, check_grip};
 use super::mode::{Act, Mode, Permits};
@@ -27,9 +29,11 @@ const STANDS_M: f64 = 1e-9;
 pub(super) struct Judge<'a> {
     plan: &'a PlanFile,
     options: &'a VerifyOptions,
+    cancel: &'a Cancel,
     robot: Robot,
     world: World<'a>,
     stage: Stage,
+    approach: Approach,
     /// By object.
     modes: Vec<Mode>,
     /// Poses of all links, overwritten at every state.
@@ -42,6 +46,8 @@ struct Trial<'a> {
     site: Site,
     step: &'a Step,
     act: Act,
+    /// See [`Robot::extents`].
+    extents: Vec<f64>,
     /// See [`Robot::travel_rates`].
     rates: Vec<f64>,
     core: Option<PushCore>,
@@ -72,14 +78,16 @@ impl Place {
 }
 
 impl<'a> Judge<'a> {
-    pub(super) fn new(plan: &'a PlanFile, options: &'a VerifyOptions) -> Result<Self, Refusal> {
+    pub(super) fn new(plan: &'a PlanFile, options: &'a VerifyOptions, cancel: &'a Cancel) -> Result<Self, Refusal> {
         let name = format!("problem `{}` in the plan", plan.problem.name);
         plan.problem.validate(&name).map_err(|e| Refusal::whole(RefusalKind::Problem, e.to_string()))?;
         let robot = Robot::new(&plan.problem)?;
         let world = World::new(&plan.problem)?;
         let stage = Stage::new(&robot, &world, options.support_m);
+        let approach = Approach::new(&robot)
+            .ok_or_else(|| Refusal::whole(RefusalKind::Problem, "more joints move than any robot of this kind has"))?;
         let modes = world.movables.iter().map(|m| Mode::Resting { surface: m.start_surface }).collect();
-        Ok(Self { plan, options, robot, world, stage, modes, links: Vec::new(), waypoints: 0 })
+        Ok(Self { plan, options, cancel, robot, world, stage, approach, modes, links: Vec::new(), waypoints: 0 })
     }
 
     /// The whole plan.
@@ -108,6 +116,7 @@ impl<'a> Judge<'a> {
         start::check(&state, &self.plan.problem, &self.robot, &self.world, self.options)?;
         self.check_limits(&state).map_err(|(kind, flaw)| refuse(kind, flaw))?;
         let (world, modes) = (&self.world, &self.modes);
+        self.stage.set_movers(|_| Movers::NONE, |_| Movers::NONE);
         self.stage.set_rules(|pair| match (pair, pair_object(pair).and_then(|o| modes.get(o))) {
             (PairKind::ObjectFixed { fixed, .. }, Some(Mode::Resting { surface }))
                 if world.carries(*surface, fixed) =>
@@ -117,7 +126,7 @@ impl<'a> Judge<'a> {
             _ => Rule::Apart,
         });
         self.robot.link_poses(&state.base, &state.joints, &mut self.links);
-        self.stage.place(&self.robot, &self.links, &state.objects, 0.0);
+        self.stage.place(&self.robot, &self.links, &state.objects, 0);
         self.stage.check(0, 0.0).map_err(|hit| {
             let words = format!("{} and {} collide", hit.names.0, hit.names.1);
             refuse(RefusalKind::Collision, words).about(&hit.names.0, &hit.names.1).at(&hit.place)
@@ -142,6 +151,14 @@ impl<'a> Judge<'a> {
         let act = Act::new(site, step, &self.world, &self.modes)?;
         let permits = Permits::new(site, step, &act, &self.robot, &self.world, &self.modes)?;
         let (world, modes) = (&self.world, &self.modes);
+        let (tool, approach) = (self.approach.of_link(self.robot.tool), &self.approach);
+        let of_object = |object| match (act.pushed, act.holding.map(|holding| holding.object)) {
+            (Some(pushed), _) if pushed == object => Movers::PUSH,
+            (_, Some(held)) if held == object => tool,
+            _ => Movers::NONE,
+        };
+        let of_solid = |solid: usize| self.robot.solids.get(solid).map_or(Movers::NONE, |s| approach.of_link(s.link));
+        self.stage.set_movers(of_solid, of_object);
         self.stage.set_rules(|pair| permits.rule(pair, &act, world, modes));
         let states = self.states(site, step, here)?;
         let trial = self.trial(site, step, act, &states)?;
@@ -195,7 +212,9 @@ impl<'a> Judge<'a> {
             };
             line = Some([tool(first), tool(last)]);
         }
-        Ok(Trial { site, step, act, rates: self.robot.travel_rates(held_m), core, line })
+        let extents = self.robot.extents(held_m);
+        let rates = self.robot.travel_rates(&extents);
+        Ok(Trial { site, step, act, extents, rates, core, line })
     }
 
     fn segment(&mut self, trial: &Trial<'a>, place: Place, from: &State, to: &State) -> Result<(), Refusal> {
@@ -203,19 +222,28 @@ impl<'a> Judge<'a> {
         self.check_changes(trial, place, &segment)?;
         let way = trial.act.pushed.and_then(|object| pushed_way(&segment, object));
         let (parts, travel_m) = segment.parts(&trial.rates, self.options);
+        self.stage.set_speeds(&self.approach.speeds(&segment, &trial.extents, trial.act.pushed), parts);
         let mut now = from.clone();
-        let first = usize::from(!place.is_first());
-        for i in first..=parts {
+        let mut i = usize::from(!place.is_first());
+        let mut gone = 1;
+        while i <= parts {
             let s = i as f64 / parts as f64;
             let time = place.time(s);
+            if self.cancel.is_cancelled() {
+                return Err(trial.site.refusal(time, RefusalKind::Cancelled, "was being judged when it was cancelled"));
+            }
             segment.robot_at(s, &mut now);
             self.robot.link_poses(&now.base, &now.joints, &mut self.links);
             self.move_objects(trial, &segment, s, &mut now);
             if i == 0 || i == parts {
                 self.check_rigid(trial, time, &now, if i == 0 { from } else { to })?;
             }
-            self.stage.place(&self.robot, &self.links, &now.objects, travel_m);
+            self.stage.place(&self.robot, &self.links, &now.objects, gone);
             self.check_state(trial, time, &now, way)?;
+            // OPTIMIZATION: states at which nothing would be looked at need not be made. The end always is.
+            let next = (i + 1 + self.idle_parts(trial, &now, travel_m, parts)).min(parts.max(i + 1));
+            gone = next - i;
+            i = next;
         }
         if place.is_first()
             && trial.site.primitive == PrimitiveName::Pick

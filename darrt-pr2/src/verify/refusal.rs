@@ -44,6 +44,8 @@ pub enum RefusalKind {
     Support,
     /// The goal does not hold at the end.
     Goal,
+    /// Nothing is known to be wrong: the judgement was given up.
+    Cancelled,
 }
 
 /// The first fault found in a plan.

@@ -134,7 +134,7 @@ impl Robot {
     }
 
     /// How far the robot, with something that reaches `held_m` beyond the tool frame, extends from each link's origin.
-    fn extents(&self, held_m: f64) -> Vec<f64> {
+    pub(super) fn extents(&self, held_m: f64) -> Vec<f64> {
         let count = self.tree.link_count();
         let mut extents = vec![0.0_f64; count];
         for solid in &self.solids {
@@ -164,8 +164,8 @@ impl Robot {
     }
 
     /// Bound on the metres that any point travels per unit of each variable, and per radian of base yaw (last).
-    pub(super) fn travel_rates(&self, held_m: f64) -> Vec<f64> {
-        let extents = self.extents(held_m);
+    /// `extents`: see [`Robot::extents`].
+    pub(super) fn travel_rates(&self, extents: &[f64]) -> Vec<f64> {
         let mut rates = vec![0.0; self.tree.variables().len() + 1];
         for (link, extent) in extents.iter().enumerate() {
             match self.tree.motion(link) {
@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn no_solid_travels_farther_than_the_rates_say() {
         let robot = Robot::new(&builtin("plate1").unwrap()).unwrap();
-        let rates = robot.travel_rates(0.0);
+        let rates = robot.travel_rates(&robot.extents(0.0));
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(9);
         let (mut before, mut after) = (Vec::new(), Vec::new());
         for _ in 0..200 {

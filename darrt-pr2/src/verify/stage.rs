@@ -1,10 +1,11 @@
 //! All solids at their places, and which pairs may not touch.
 
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BinaryHeap};
 
 use nalgebra::{Isometry3, Point3};
 
+use super::approach::{Movers, Speeds};
 use super::robot::Robot;
 use super::solid::{Placed, Solid, exact, lower_bound};
 use super::world::World;
@@ -14,6 +15,14 @@ const LIFT_SLACK_M: f64 = 1e-4;
 
 /// How far measured distances and travels may be off, metres.
 const ROUNDING_M: f64 = 1e-6;
+
+/// A pair is looked at again when it would have to be within this many parts of a segment: so that many parts at once need
+/// no look at anything.
+const AHEAD_PARTS: f64 = 10.0;
+
+/// Part of the smallest distance seen so far below which a pair is looked at again, though it cannot touch yet. The smallest
+/// clearance is known to within this part.
+const SOUGHT: f64 = 0.5;
 
 /// How a pair is treated during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,9 +62,23 @@ struct Pair {
 /// When a pair must be looked at again.
 #[derive(Debug, Clone, Copy)]
 struct Due {
-    /// Distance of the pair when last measured, plus twice what [`Stage::travelled_m`] was then.
+    /// Distance of the pair when last measured, plus what [`Class::travelled_m`] was then.
     reserve_m: f64,
     pair: usize,
+}
+
+/// Pairs of solids that the same joints move towards each other.
+#[derive(Debug, Default)]
+struct Class {
+    between: Movers,
+    /// The pairs that may not touch, the most urgent first.
+    apart: BinaryHeap<Due>,
+    /// The pairs of which one stands on the other.
+    standing: BinaryHeap<Due>,
+    /// Bound on how far the two of a pair have moved towards each other since the rules were set, metres.
+    travelled_m: f64,
+    /// The same in one part of this segment.
+    part_m: f64,
 }
 
 impl Ord for Due {
@@ -107,16 +130,14 @@ pub(super) struct Stage {
     /// World centres of the balls around the solids.
     centres: Vec<Point3<f64>>,
     pairs: Vec<Pair>,
-    /// The pairs that may not touch, the most urgent first.
-    due: BinaryHeap<Due>,
-    /// The pairs of which one stands on the other: few.
-    standing: Vec<Due>,
+    /// By solid.
+    movers: Vec<Movers>,
+    classes: Vec<Class>,
     /// Those that were looked at in this check.
     measured: Vec<Due>,
     links: usize,
+    objects: usize,
     lift_m: f64,
-    /// Bound on how far any solid has moved since the beginning, metres.
-    travelled_m: f64,
     /// States looked at.
     pub(super) states: u64,
     /// Questions to the oracle.
@@ -149,40 +170,63 @@ impl Stage {
             (o + 1..objects).for_each(|other| add(links + o, links + other, PairKind::Other));
         }
         Self {
-            due: BinaryHeap::new(),
-            standing: Vec::new(),
+            movers: vec![Movers::NONE; solids.len()],
+            classes: Vec::new(),
             measured: Vec::new(),
             centres: solids.iter().zip(&poses).map(|(solid, pose)| solid.world_centre(pose)).collect(),
             solids,
             poses,
             pairs,
             links,
+            objects,
             lift_m: support_m + LIFT_SLACK_M,
-            travelled_m: 0.0,
             states: 0,
             exact_tests: 0,
             smallest: None,
         }
     }
 
-    /// Decides anew how each pair is treated; the next check looks at all of them.
-    pub(super) fn set_rules(&mut self, rule: impl Fn(PairKind) -> Rule) {
-        self.due.clear();
-        self.standing.clear();
-        for (index, pair) in self.pairs.iter_mut().enumerate() {
-            pair.rule = rule(pair.kind);
-            let due = Due { reserve_m: f64::NEG_INFINITY, pair: index };
-            match pair.rule {
-                Rule::Free => {}
-                Rule::Apart => self.due.push(due),
-                Rule::Standing => self.standing.push(due),
-            }
+    /// Says what moves each of the robot's solids and each object from here on; call it before [`Stage::set_rules`].
+    pub(super) fn set_movers(&mut self, of_link_solid: impl Fn(usize) -> Movers, of_object: impl Fn(usize) -> Movers) {
+        for (solid, slot) in self.movers.iter_mut().enumerate() {
+            let is_fixed = solid >= self.links + self.objects;
+            *slot = match solid.checked_sub(self.links) {
+                None => of_link_solid(solid),
+                Some(object) if !is_fixed => of_object(object),
+                Some(_) => Movers::NONE,
+            };
         }
     }
 
-    /// Puts links and objects at their places; none moves by more than `travel_m`.
-    pub(super) fn place(&mut self, robot: &Robot, links: &[Isometry3<f64>], objects: &[Isometry3<f64>], travel_m: f64) {
-        self.travelled_m += travel_m;
+    /// Decides anew how each pair is treated; the next check looks at all of them.
+    pub(super) fn set_rules(&mut self, rule: impl Fn(PairKind) -> Rule) {
+        let mut classes: BTreeMap<Movers, Class> = BTreeMap::new();
+        for (index, pair) in self.pairs.iter_mut().enumerate() {
+            pair.rule = rule(pair.kind);
+            let between = self.movers[pair.a].between(self.movers[pair.b]);
+            let class = classes.entry(between).or_insert_with(|| Class { between, ..Class::default() });
+            let due = Due { reserve_m: f64::NEG_INFINITY, pair: index };
+            match pair.rule {
+                Rule::Free => {}
+                Rule::Apart => class.apart.push(due),
+                Rule::Standing => class.standing.push(due),
+            }
+        }
+        self.classes = classes.into_values().collect();
+    }
+
+    /// Says how fast things move in the segment that begins here, which has `parts` equal parts.
+    pub(super) fn set_speeds(&mut self, speeds: &Speeds, parts: usize) {
+        for class in &mut self.classes {
+            class.part_m = speeds.of(class.between) / parts.max(1) as f64;
+        }
+    }
+
+    /// Puts links and objects at their places, `parts` parts of the segment farther on.
+    pub(super) fn place(&mut self, robot: &Robot, links: &[Isometry3<f64>], objects: &[Isometry3<f64>], parts: usize) {
+        for class in &mut self.classes {
+            class.travelled_m += class.part_m * parts as f64;
+        }
         let of_links =
             robot.solids.iter().map(|s| links.get(s.link).map_or(s.link_from_solid, |l| l * s.link_from_solid));
         let all = of_links.chain(objects.iter().copied());
@@ -198,36 +242,58 @@ impl Stage {
     /// Looks at every pair that could touch, or be nearer than any other was, since it was last looked at.
     pub(super) fn check(&mut self, step: u32, time: f64) -> Result<(), Hit> {
         self.states += 1;
-        let result = self.check_due(step, time);
-        self.due.extend(self.measured.drain(..));
+        let mut classes = std::mem::take(&mut self.classes);
+        let result = classes.iter_mut().try_for_each(|class| self.check_class(class, step, time));
+        self.classes = classes;
         result
     }
 
-    fn check_due(&mut self, step: u32, time: f64) -> Result<(), Hit> {
-        // OPTIMIZATION: two solids that were far apart a moment ago still are; both may have moved.
-        let since_m = 2.0 * self.travelled_m;
-        for index in 0..self.standing.len() {
-            let Some(due) = self.standing.get(index).copied() else { continue };
-            if due.reserve_m - since_m <= ROUNDING_M {
-                let reserve_m = since_m + self.look(due.pair, step, time)?;
-                self.standing[index].reserve_m = reserve_m;
-            }
-        }
-        while let Some(first) = self.due.peek().copied() {
-            let nearest = self.smallest.as_ref().map_or(f64::INFINITY, |s| s.distance_m);
-            if first.reserve_m - since_m > nearest + ROUNDING_M {
-                break;
-            }
-            self.due.pop();
-            let reserve_m = since_m + self.look(first.pair, step, time)?;
-            self.measured.push(Due { reserve_m, ..first });
+    fn check_class(&mut self, class: &mut Class, step: u32, time: f64) -> Result<(), Hit> {
+        for is_standing in [true, false] {
+            let pairs = if is_standing { &mut class.standing } else { &mut class.apart };
+            let result = loop {
+                let Some(first) = pairs.peek().copied() else { break Ok(()) };
+                // Looked at before, and neither has moved to the other since.
+                let is_still = class.part_m == 0.0 && first.reserve_m > f64::NEG_INFINITY;
+                let enough_m = if is_standing { 0.0 } else { SOUGHT * self.nearest_m() };
+                let ahead_m = AHEAD_PARTS * class.part_m;
+                if is_still || first.reserve_m - class.travelled_m > enough_m + ahead_m + ROUNDING_M {
+                    break Ok(());
+                }
+                pairs.pop();
+                match self.look(first.pair, enough_m + ahead_m, step, time) {
+                    Ok(distance_m) => {
+                        self.measured.push(Due { reserve_m: class.travelled_m + distance_m, ..first });
+                    }
+                    Err(hit) => break Err(hit),
+                }
+            };
+            pairs.extend(self.measured.drain(..));
+            result?;
         }
         Ok(())
     }
 
+    /// The smallest distance seen so far, metres.
+    fn nearest_m(&self) -> f64 {
+        self.smallest.as_ref().map_or(f64::INFINITY, |s| s.distance_m)
+    }
+
+    /// How many parts of this segment may pass before [`Stage::check`] would look at any pair again.
+    pub(super) fn idle_parts(&self) -> f64 {
+        let nearest_m = self.nearest_m();
+        let moving = self.classes.iter().filter(|class| class.part_m > 0.0);
+        let parts = moving.map(|class| {
+            let apart = class.apart.peek().map_or(f64::INFINITY, |due| due.reserve_m - SOUGHT * nearest_m);
+            let standing = class.standing.peek().map_or(f64::INFINITY, |due| due.reserve_m);
+            (apart.min(standing) - class.travelled_m - ROUNDING_M) / class.part_m
+        });
+        parts.fold(f64::INFINITY, f64::min).max(0.0)
+    }
+
     /// Looks at one pair: a lower bound of its distance that is above 0 and, if it may be the smallest so far, exact.
-    fn look(&mut self, index: usize, step: u32, time: f64) -> Result<f64, Hit> {
-        let nearest = self.smallest.as_ref().map_or(f64::INFINITY, |s| s.distance_m);
+    fn look(&mut self, index: usize, enough_m: f64, step: u32, time: f64) -> Result<f64, Hit> {
+        let nearest = self.nearest_m();
         let pair = &self.pairs[index];
         let (a, b) = (pair.a, pair.b);
         let (solid_a, solid_b) = (&self.solids[a], &self.solids[b]);
@@ -242,7 +308,7 @@ impl Stage {
         let bound = lower_bound(&placed_a, &placed_b);
         let (pose_a, pose_b) = (placed_a.world_from_solid, placed_b.world_from_solid);
         let is_counted = pair.rule == Rule::Apart && bound < nearest;
-        if bound > 0.0 && !is_counted {
+        if bound > 0.0 && !is_counted && bound >= enough_m {
             return Ok(bound);
         }
         self.exact_tests += 1;

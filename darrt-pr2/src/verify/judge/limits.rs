@@ -1,5 +1,7 @@
 //! Joint limits, and the bounds of base and objects.
 
+use nalgebra::Isometry3;
+
 use super::Judge;
 use crate::verify::motion::State;
 use crate::verify::refusal::RefusalKind;
@@ -26,6 +28,15 @@ impl Judge<'_> {
         (0..state.objects.len())
             .try_for_each(|object| self.check_object_bounds(object, state))
             .map_err(|text| (RefusalKind::Bounds, text))
+    }
+
+    /// How far an object at `pose` is from leaving the bounds of objects, metres; negative outside.
+    pub(super) fn inside_object_bounds(&self, pose: &Isometry3<f64>) -> f64 {
+        let bounds = &self.plan.problem.bounds;
+        let ranges = [bounds.object_x, bounds.object_y, bounds.object_z];
+        let insides =
+            ranges.iter().zip(pose.translation.vector.iter()).map(|([low, high], at)| (at - low).min(high - at));
+        insides.fold(f64::INFINITY, f64::min)
     }
 
     pub(super) fn check_object_bounds(&self, object: usize, state: &State) -> Result<(), String> {

@@ -75,6 +75,23 @@ impl<'a> Judge<'a> {
         })
     }
 
+    /// How many of the next `parts` parts of a segment, each at most `travel_m` long, may pass before
+    /// [`Judge::check_state`] could find a fault that it does not find now. None in a push and on a straight line, of which
+    /// every state is looked at.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped to a range that fits any usize"
+    )]
+    pub(super) fn idle_parts(&self, trial: &Trial<'a>, now: &State, travel_m: f64, parts: usize) -> usize {
+        if trial.core.is_some() || trial.line.is_some() {
+            return 0;
+        }
+        let held = trial.act.holding.and_then(|holding| now.objects.get(holding.object));
+        let inside = held.map_or(f64::INFINITY, |pose| self.inside_object_bounds(pose) / travel_m);
+        self.stage.idle_parts().min(inside).clamp(0.0, parts as f64) as usize
+    }
+
     /// A pushed object does not leave its surface.
     pub(super) fn check_on_surface(&self, site: Site, time: f64, object: usize, now: &State) -> Result<(), Refusal> {
         let (Some(Mode::Resting { surface }), Some(pose)) = (self.modes.get(object), now.objects.get(object)) else {

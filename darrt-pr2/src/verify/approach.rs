@@ -1,0 +1,113 @@
+//! How fast two solids can approach each other: only the joints between them count, and what drives only one of them.
+//!
+//! # Source
+//! The bound on relative travel of Schwarzer, Saha and Latombe, Adaptive dynamic collision checking for single and
+//! multiple articulated robots in complex environments, 2005, section 3.
+
+use darrt_primitives::kinematics::tree::LinkMotion;
+
+use super::motion::Segment;
+use super::robot::{Robot, Role};
+
+/// What moves a solid: one bit for each moving joint above it, one for the base, one for a push.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub(super) struct Movers(u64);
+
+impl Movers {
+    /// It stands still.
+    pub(super) const NONE: Self = Self(0);
+    /// It is pushed.
+    pub(super) const PUSH: Self = Self(1);
+    const BASE: Self = Self(2);
+    const FIRST_JOINT: usize = 2;
+    const MOST_JOINTS: usize = 62;
+
+    /// What moves one of two solids and not the other: what changes how they stand to each other.
+    pub(super) fn between(self, other: Self) -> Self {
+        Self(self.0 ^ other.0)
+    }
+
+    fn includes(self, bit: usize) -> bool {
+        self.0 & (1 << bit) != 0
+    }
+}
+
+/// A joint that a step may move, with the link below it.
+#[derive(Debug)]
+struct Joint {
+    link: usize,
+    variable: usize,
+    multiplier: f64,
+    turns: bool,
+}
+
+/// The joints of the robot that may move, and the links that they move.
+#[derive(Debug)]
+pub(super) struct Approach {
+    joints: Vec<Joint>,
+    /// By link.
+    movers: Vec<Movers>,
+}
+
+/// Bounds of travel in one segment, metres, by the bits of [`Movers`].
+#[derive(Debug)]
+pub(super) struct Speeds(Vec<f64>);
+
+impl Speeds {
+    /// How much nearer two solids with these movers between them can come.
+    pub(super) fn of(&self, between: Movers) -> f64 {
+        self.0.iter().enumerate().filter(|(bit, _)| between.includes(*bit)).map(|(_, speed)| speed).sum()
+    }
+}
+
+impl Approach {
+    /// `None` if more joints move than a robot has; then nothing is known.
+    pub(super) fn new(robot: &Robot) -> Option<Self> {
+        let count = robot.tree.link_count();
+        let mut joints = Vec::new();
+        let mut movers = vec![Movers::BASE; count];
+        // Parents come before their children.
+        for link in 0..count {
+            let above = robot.tree.parent(link).and_then(|parent| movers.get(parent)).copied();
+            let mut here = above.unwrap_or(Movers::BASE);
+            let (drive, turns) = match robot.tree.motion(link) {
+                Some(LinkMotion::Turning { drive, .. }) => (Some(drive), true),
+                Some(LinkMotion::Sliding { drive, .. }) => (Some(drive), false),
+                _ => (None, false),
+            };
+            if let Some(drive) = drive.filter(|drive| robot.roles.get(drive.variable) != Some(&Role::Parked)) {
+                if joints.len() == Movers::MOST_JOINTS {
+                    return None;
+                }
+                here.0 |= 1 << (Movers::FIRST_JOINT + joints.len());
+                joints.push(Joint { link, variable: drive.variable, multiplier: drive.multiplier.abs(), turns });
+            }
+            if let Some(slot) = movers.get_mut(link) {
+                *slot = here;
+            }
+        }
+        Some(Self { joints, movers })
+    }
+
+    /// What moves a link.
+    pub(super) fn of_link(&self, link: usize) -> Movers {
+        self.movers.get(link).copied().unwrap_or(Movers::NONE)
+    }
+
+    /// Bounds for one segment. `extents`: see [`Robot::extents`].
+    pub(super) fn speeds(&self, segment: &Segment<'_>, extents: &[f64], pushed: Option<usize>) -> Speeds {
+        let way = |object: usize| {
+            let (from, to) = (segment.from.objects.get(object)?, segment.to.objects.get(object)?);
+            Some((to.translation.vector - from.translation.vector).norm())
+        };
+        let [x, y, yaw] = segment.base;
+        let reach = |link: usize| extents.get(link).copied().unwrap_or(f64::INFINITY);
+        let base = x.hypot(y) + if yaw == 0.0 { 0.0 } else { yaw.abs() * reach(0) };
+        let joints = self.joints.iter().map(|joint| {
+            let turn = segment.joints.get(joint.variable).copied().unwrap_or(f64::INFINITY).abs();
+            let arm = if joint.turns { reach(joint.link) } else { 1.0 };
+            if turn == 0.0 { 0.0 } else { turn * joint.multiplier * arm }
+        });
+        Speeds([pushed.and_then(way).unwrap_or(0.0), base].into_iter().chain(joints).collect())
+    }
+}
