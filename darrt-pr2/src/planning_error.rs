@@ -1,8 +1,8 @@
 //! What can keep a problem from being planned at all.
 
 use darrt_geom::GeomError;
-use darrt_primitives::error::PrimitiveError;
 
+use crate::grasp_families::GraspFlaw;
 use crate::model::ModelError;
 use crate::plan_file::PlanFileError;
 use crate::problem_file::ProblemFileError;
@@ -27,12 +27,14 @@ pub enum PlanningError {
     #[error(transparent)]
     PlanFile(#[from] PlanFileError),
     /// A family of grasps does not fit its object.
-    #[error("object `{object}`: its grasps cannot be used: {source}")]
+    #[error("the grasps of `{object}` cannot be used: `object[{index}].{}`: {}", flaw.key, flaw.source)]
     Grasp {
         /// The object.
         object: String,
-        /// Why.
-        source: PrimitiveError,
+        /// Its index in the file.
+        index: usize,
+        /// The key at fault, and why.
+        flaw: GraspFlaw,
     },
     /// An arm's start has the wrong number of joints.
     #[error("{key}: the arm's start has {found} joints, it must have 7")]
