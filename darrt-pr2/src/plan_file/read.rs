@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::json::{check_nesting, path_at};
 use super::{PlanFile, PlanFileError, VERSION};
+use crate::file_kind::FileKind;
 use crate::problem_file::suggest::{nearest_expected, shown};
 use crate::text_file;
 pub use crate::text_file::MAX_NESTING;
@@ -30,9 +31,10 @@ impl PlanFile {
     /// # Errors
     /// As [`PlanFile::read`], except for what concerns the file system.
     pub fn from_json(text: &str, source_name: &str) -> Result<Self, PlanFileError> {
-        text_file::check(text, source_name, MAX_BYTES, check_nesting)?;
-        let plan: Self = serde_json::from_str(text)
-            .map_err(|error| other_version(text, source_name).unwrap_or_else(|| syntax(text, source_name, &error)))?;
+        let plan = parse(text, source_name).map_err(|error| {
+            let what = FileKind::of_text(text).and_then(|kind| kind.instead_of_plan(source_name));
+            what.map_or(error, |what| PlanFileError::OtherKind { file: source_name.to_owned(), what })
+        })?;
         if plan.version != VERSION {
             return Err(PlanFileError::Version {
                 file: source_name.to_owned(),
@@ -42,6 +44,13 @@ impl PlanFile {
         }
         Ok(plan)
     }
+}
+
+/// Guards and JSON.
+fn parse(text: &str, source_name: &str) -> Result<PlanFile, PlanFileError> {
+    text_file::check(text, source_name, MAX_BYTES, check_nesting)?;
+    serde_json::from_str(text)
+        .map_err(|error| other_version(text, source_name).unwrap_or_else(|| syntax(text, source_name, &error)))
 }
 
 /// A file of another version may differ anywhere; its version is then what there is to say.
