@@ -109,7 +109,11 @@ fn numbers_are_finite_positive_and_in_range() {
 fn starts_are_possible() {
     all_refused(&[
         (POSTURE, "\njoints = [0, 0, 0, 0.2, 0, -1, 0]", &["`r_elbow_flex_joint`", "0.2", "soft", "[-2.1213, -0.15]"]),
-        (POSTURE, "\nposture = \"tucked\"", &["`r_elbow_flex_joint`", "-2.124408", "soft", "[-2.1213, -0.15]"]),
+        (
+            POSTURE,
+            "\nposture = \"tucked\"",
+            &["`r_elbow_flex_joint`", "-2.124408", "soft", "[-2.1213, -0.15]", "`limits = \"hard\"`"],
+        ),
         (
             "other_posture = \"side\"",
             "other_joints = [0, 0, 0, 0.2, 0, 0, 0]",
@@ -126,6 +130,22 @@ fn starts_are_possible() {
             "at = [-0.20, 0.05]\ngrasps",
             "at = [-0.20, 0.75]\ngrasps",
             &["`object[0].at`", "`plate`", "[-0.2, 0.75]", "0.15 m outside", "`central table`"],
+        ),
+    ]);
+}
+
+#[test]
+fn grasps_fit_their_object() {
+    all_refused(&[
+        (
+            "[object.rim]",
+            "[object.rim]\nopening_m = 0.02",
+            &["the grasps of `plate`", "`object[0].rim.opening_m`", "below 0.02, found 0.02"],
+        ),
+        (
+            "grasps = [\"rim\"]",
+            "grasps = [\"overhead\"]\noverhead = { insertion_m = 0.01 }",
+            &["the grasps of `plate`", "`object[0].overhead.opening_m`", "below 0.05, found 0.28"],
         ),
     ]);
 }
@@ -252,6 +272,72 @@ fn plan_files_are_checked() {
         desk.write("bad.json", good.replacen(old, new, 1));
         let parts: Vec<&str> = ["bad.json"].iter().chain(parts).copied().collect();
         desk.refused(&["check", "bad.json"], exit, &parts);
+    }
+}
+
+#[test]
+fn what_a_waypoint_lacks_is_named() {
+    let desk = Desk::new();
+    desk.problem("easy.toml", &[(GOAL, "on = \"central table\"\nat = [-0.20, 0.05]")]);
+    desk.run(&["plan", "easy.toml", "-o", "good.json", "--no-picture", "--quiet"]);
+    let mut plan: serde_json::Value = serde_json::from_slice(&std::fs::read(desk.path("good.json")).unwrap()).unwrap();
+    let start = plan["start"].clone();
+    let mut torn = start.clone();
+    torn["joints"].as_object_mut().unwrap().remove("r_wrist_roll_joint");
+    for (waypoints, index) in [([&torn, &start], 0), ([&start, &torn], 1)] {
+        plan["steps"] = serde_json::json!([{
+            "primitive": "Arm-Transit", "object": null, "holds": null, "pushes": null, "allowed_contacts": [],
+            "waypoints": waypoints,
+        }]);
+        desk.write("torn.json", plan.to_string());
+        let place = format!("step 1 (Arm-Transit): waypoint {index} lacks the joint `r_wrist_roll_joint`");
+        desk.refused(&["check", "torn.json"], 3, &["torn.json: refused: ", &place]);
+    }
+}
+
+#[test]
+fn files_of_the_other_kind_are_told_and_sent_to_their_command() {
+    let desk = Desk::new();
+    desk.problem("easy.toml", &[(GOAL, "on = \"central table\"\nat = [-0.20, 0.05]")]);
+    desk.run(&["plan", "easy.toml", "-o", "easy.json", "--no-picture", "--quiet"]);
+    let plan = std::fs::read_to_string(desk.path("easy.json")).unwrap();
+    // Larger than any problem file may be.
+    desk.write("large.json", format!("{plan}{}", " ".repeat(5 << 20)));
+    for name in ["easy.json", "large.json"] {
+        let command = format!("`darrt check {name}`");
+        desk.refused(&["plan", name], 2, &[&format!("{name}: is a plan, not a problem"), &command]);
+    }
+    desk.refused(&["check", "easy.toml"], 2, &["easy.toml: is a problem, not a plan", "`darrt plan easy.toml`"]);
+    desk.refused(&["check", "plate3"], 2, &["plate3: is a built-in problem", "`darrt plan plate3`"]);
+    desk.write("problem.json", "{\"format\": \"darrt-problem\"}");
+    desk.refused(&["plan", "problem.json"], 2, &["problem.json: is a problem as JSON", "TOML"]);
+    desk.refused(&["check", "problem.json"], 2, &["problem.json: is a problem as JSON, not a plan"]);
+}
+
+#[test]
+fn names_cannot_act_on_the_terminal() {
+    let escape = "\\u001b[2J";
+    let shown = "\\u{1b}[2J";
+    for (old, new, key) in [
+        ("name = \"plate1\"", format!("name = \"a{escape}\""), "`name`"),
+        ("name = \"plate\"", format!("name = \"a{escape}\""), "`object[0].name`"),
+        ("name = \"big bowl\"", format!("name = \"a\\nb{escape}\""), "`obstacle[10].name`"),
+        ("mass_kg = ", format!("\"a{escape}\" = "), "unknown field"),
+        ("\non = \"central table\"", format!("\non = \"a{escape}\""), "`object[0].on`"),
+        (POSTURE, format!("\nposture = \"a{escape}\""), "`robot.posture`"),
+    ] {
+        let desk = Desk::new();
+        desk.problem("bad.toml", &[(old, &new)]);
+        desk.plan_refused("bad.toml", &[key, shown]);
+    }
+    let desk = Desk::new();
+    desk.problem("easy.toml", &[(GOAL, "on = \"central table\"\nat = [-0.20, 0.05]")]);
+    desk.run(&["plan", "easy.toml", "-o", "good.json", "--no-picture", "--quiet"]);
+    let good = std::fs::read_to_string(desk.path("good.json")).unwrap();
+    for (old, exit) in [("\"seed\"", 2), ("\"r_elbow_flex_joint\"", 3), ("\"name\": \"plate\"", 3)] {
+        let new = if old.contains(':') { format!("\"name\": \"a\\n{escape}\"") } else { format!("\"a\\n{escape}\"") };
+        desk.write("bad.json", good.replacen(old, &new, 1));
+        desk.refused(&["check", "bad.json"], exit, &[shown]);
     }
 }
 

@@ -11,6 +11,7 @@ use crate::plan_file::{PlanFile, Waypoint};
 use crate::postures::ArmPosture;
 use crate::problem_file::geometry::Geometry;
 use crate::problem_file::{ArmSide, PrimitiveName, ProblemFile};
+use crate::words::counted;
 
 use super::PictureError;
 
@@ -136,14 +137,13 @@ impl Story {
 /// How the plan was found, in one line.
 fn note(plan: &PlanFile) -> String {
     let facts = &plan.planner;
-    let words = |count: u64, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
     format!(
         "Seed {}: {} found after {} and {}, tree of {}.",
         plan.seed,
-        words(plan.steps.len() as u64, "step"),
-        words(facts.iterations, "iteration"),
-        words(facts.restarts, "restart"),
-        words(facts.nodes, "node"),
+        counted(plan.steps.len() as u64, "step"),
+        counted(facts.iterations, "iteration"),
+        counted(facts.restarts, "restart"),
+        counted(facts.nodes, "node"),
     )
 }
 

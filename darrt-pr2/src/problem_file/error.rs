@@ -3,7 +3,7 @@
 use darrt_geom::GeomError;
 use thiserror::Error;
 
-use super::suggest::{hint, listed};
+use super::suggest::{hint, listed, shown};
 use crate::text_file::TextFileError;
 
 /// A problem file that cannot be used, with the place and the reason.
@@ -13,6 +13,14 @@ pub enum ProblemFileError {
     /// The file or text is none that is given to the parser.
     #[error(transparent)]
     Text(#[from] TextFileError),
+    /// The file is something else, and says so.
+    #[error("{file}: {what}")]
+    OtherKind {
+        /// The file.
+        file: String,
+        /// What it is, and which command takes it.
+        what: String,
+    },
     /// The text is not TOML, or a key or value is not part of the format.
     #[error("{file}:{line}:{column}: {}{message}{}", at(key.as_deref()), hint(nearest.as_deref()))]
     Syntax {
@@ -68,8 +76,14 @@ pub enum Flaw {
         /// The bound in words.
         bound: String,
     },
+    /// A name holds characters that do something to a terminal.
+    #[error("is \"{}\", a name must not have control characters", shown(name))]
+    Unprintable {
+        /// The name.
+        name: String,
+    },
     /// A count or length is outside its bound.
-    #[error("has {found} entries, must have {bound}")]
+    #[error("has {found} {}, must have {bound}", if *found == 1 { "entry" } else { "entries" })]
     WrongLength {
         /// How many there are.
         found: usize,
