@@ -145,6 +145,62 @@ pub enum Flaw {
         /// The surface.
         surface: String,
     },
+    /// A surface is above or inside its body.
+    #[error(
+        "puts the surface `{surface}` at the height {height}, but the top of its body `{body}` is at {}; they may differ \
+         by {tolerance} m",
+        metres(*top)
+    )]
+    NotOnTop {
+        /// The surface.
+        surface: String,
+        /// Its height (m).
+        height: f64,
+        /// Its body.
+        body: String,
+        /// The height of the body (m).
+        top: f64,
+        /// The largest difference (m).
+        tolerance: f64,
+    },
+    /// A corner of a surface is not on its body.
+    #[error(
+        "is the corner [{}, {}] of the surface `{surface}`, {} m beside its body `{body}`; at most {tolerance} m is on it",
+        corner[0], corner[1], metres(*outside)
+    )]
+    BesideBody {
+        /// The surface.
+        surface: String,
+        /// World x, y.
+        corner: [f64; 2],
+        /// How far from the body (m).
+        outside: f64,
+        /// The body.
+        body: String,
+        /// How far is near enough (m).
+        tolerance: f64,
+    },
+    /// A mesh has no upper face where a surface is.
+    #[error(
+        "puts the surface `{surface}` at the height {height}, but at [{}, {}] its body `{body}` has {}; a face that looks \
+         up must be within {tolerance} m",
+        metres(at[0]), metres(at[1]),
+        nearest.map_or_else(|| "nothing".to_owned(), |z| format!("its nearest face at {}", metres(z)))
+    )]
+    NoFace {
+        /// The surface.
+        surface: String,
+        /// Its height (m).
+        height: f64,
+        /// Its body, a mesh.
+        body: String,
+        /// World x, y.
+        at: [f64; 2],
+        /// Height of the nearest face there, which may be an underside (m).
+        nearest: Option<f64>,
+        /// The largest difference (m).
+        tolerance: f64,
+    },
     /// A shape, mesh or polygon that cannot be built.
     #[error("cannot be built: {0}")]
     Geometry(#[from] GeomError),
@@ -159,7 +215,7 @@ fn at(key: Option<&str>) -> String {
 
 /// Metres, to a tenth of a millimetre but never to 0.
 fn metres(length: f64) -> f64 {
-    if length < 1e-4 { length } else { (length * 1e4).round() / 1e4 }
+    if length.abs() < 1e-4 { length } else { (length * 1e4).round() / 1e4 }
 }
 
 /// A flaw and the path of the key that has it.
