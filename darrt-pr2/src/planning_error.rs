@@ -64,6 +64,14 @@ pub enum PlanningError {
         /// What is in the way, and where.
         blame: String,
     },
+    /// The primitives and grasps of the problem do not suffice for any of the goals of an object.
+    #[error("the goal of `{object}` cannot be reached: {why}")]
+    GoalWithoutMeans {
+        /// The object.
+        object: String,
+        /// What each of its goals lacks.
+        why: String,
+    },
     /// A primitive needs another one that the problem leaves out.
     #[error("`{primitive}` is allowed but not `{needs}`, which it is made of")]
     MissingPrimitive {
