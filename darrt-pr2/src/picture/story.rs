@@ -14,6 +14,7 @@ use crate::problem_file::{ArmSide, PrimitiveName, ProblemFile};
 use crate::words::counted;
 
 use super::PictureError;
+use super::abridged::Telling;
 
 /// Gap between the fingers where nothing says otherwise (m).
 const OPEN_GAP: f64 = 0.08;
@@ -60,6 +61,8 @@ pub struct Story {
     pub start: Snapshot,
     /// The steps of the plan; none for a problem.
     pub steps: Vec<StoryStep>,
+    /// What each step stands for in an abridged story; empty when each stands for itself.
+    pub(super) tellings: Vec<Telling>,
 }
 
 impl Story {
@@ -81,7 +84,8 @@ impl Story {
             objects: geometry.objects.iter().map(|object| object.world_from_object).collect(),
         };
         let side = side_of(problem.robot.arm);
-        Ok(Self { problem: problem.clone(), geometry, model, side, note: String::new(), start, steps: Vec::new() })
+        let (steps, tellings) = (Vec::new(), Vec::new());
+        Ok(Self { problem: problem.clone(), geometry, model, side, note: String::new(), start, steps, tellings })
     }
 
     /// The story of a plan.
