@@ -22,9 +22,13 @@ impl FileKind {
     /// What the text says that it is; `None` when it does not say.
     pub(crate) fn of_text(text: &str) -> Option<Self> {
         if is_json(text.as_bytes()) {
-            // A plan embeds its problem, so this order.
-            let kinds = [("\"darrt-plan\"", Self::Plan), ("\"darrt-problem\"", Self::JsonProblem)];
-            return kinds.into_iter().find(|(word, _)| text.contains(word)).map(|(_, kind)| kind);
+            if text.contains("\"darrt-plan\"") {
+                return Some(Self::Plan);
+            }
+            // A plan embeds its problem, so only the first word counts.
+            let (_, value) = text.split_once("\"format\"")?;
+            let value = value.trim_start_matches([' ', '\t', '\r', '\n', ':']);
+            return value.starts_with("\"darrt-problem\"").then_some(Self::JsonProblem);
         }
         let says = |line: &str| line.trim_start().starts_with("format") && line.contains("darrt-problem");
         text.lines().any(says).then_some(Self::Problem)
@@ -83,6 +87,7 @@ mod tests {
         assert_eq!(FileKind::of_text(plan), Some(FileKind::Plan));
         assert_eq!(FileKind::of_text(" {\"format\": \"darrt-problem\"}"), Some(FileKind::JsonProblem));
         assert_eq!(FileKind::of_text("# mine\n format = 'darrt-problem'\nx = = 2"), Some(FileKind::Problem));
+        assert_eq!(FileKind::of_text(&plan.replace("darrt-plan", "darrt-plot")), None);
         for text in ["", "{}", "[1]", "format = 1", "name = \"darrt-problem\""] {
             assert_eq!(FileKind::of_text(text), None, "{text}");
         }

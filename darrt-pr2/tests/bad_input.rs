@@ -168,6 +168,16 @@ fn goals_are_possible() {
             "on = \"central table\"\nregion = { min = [0.05, 0.03], max = [0.08, 0.06] }",
             &["the goal of `plate` is blocked", "`big bowl`"],
         ),
+        (
+            "  \"Place\",\n",
+            "",
+            &["the goal of `plate` cannot be reached", "`goal.object[0]`", "`side table`", "`Place` is not among"],
+        ),
+        (
+            "grasps = [\"rim\"]",
+            "grasps = []",
+            &["the goal of `plate` cannot be reached", "`goal.object[0]`", "no `grasps` for Pick"],
+        ),
         ("  \"Straight-Line-Arm-Transit\",\n", "", &["`Push` is allowed but not `Straight-Line-Arm-Transit`"]),
     ]);
 }
@@ -249,6 +259,31 @@ fn meshes_are_checked() {
         desk.plan_refused("mesh.toml", &["`obstacle[10]`", name, part]);
         desk.refused(&["show", "mesh.toml", "-o", "kept.html"], 2, &["`obstacle[10]`", name, part]);
     }
+}
+
+#[test]
+fn surfaces_lie_on_their_bodies() {
+    let polygon = |z: f64, far: f64, rest: &str| {
+        format!("polygon = [[-0.45, -0.6], [{far}, -0.6], [{far}, 0.6], [-0.45, 0.6]]\nz = {z}\n{rest}")
+    };
+    let body = "body = \"central table top\"";
+    let top = "top_of = \"central table top\"";
+    let desk = Desk::new();
+    desk.problem("good.toml", &[(top, &polygon(0.75, 0.45, body))]);
+    assert_eq!(desk.run(&["plan", "good.toml", "--iterations", "1"]).status.code(), Some(1));
+    all_refused(&[
+        (top, &polygon(0.75, 0.45, ""), &["`surface[0]`", "needs `body`"]),
+        (
+            top,
+            &polygon(0.9, 0.45, body),
+            &["`surface[0].z`", "`central table`", "0.9", "`central table top`", "at 0.75", "0.001 m"],
+        ),
+        (
+            top,
+            &polygon(0.75, 0.5, body),
+            &["`surface[0].polygon[1]`", "[0.5, -0.6]", "`central table`", "0.05 m beside", "`central table top`"],
+        ),
+    ]);
 }
 
 #[test]

@@ -20,6 +20,7 @@ pub(super) fn run(options: &CheckOptions, output: &mut Output) -> Result<Exit, F
     let plan = read(&options.plan)?;
     let name = options.plan.display();
     let refuse = |why: String| Failure::new(Exit::Refused, on_one_line(&format!("{name}: refused: {why}")));
+    plan.problem.check_files().map_err(|error| Failure::input(format!("{name}: {error}")))?;
     plan.check_complete().map_err(|flaw| refuse(flaw.to_string()))?;
     let proof = verify::verify(&plan).map_err(|refusal| refuse(refusal.to_string()))?;
     if options.steps {

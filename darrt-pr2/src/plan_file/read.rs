@@ -17,16 +17,26 @@ pub const MAX_BYTES: u64 = 256 * 1024 * 1024;
 impl PlanFile {
     /// Reads the plan file at `path`.
     ///
+    /// Relative paths of meshes and of a robot description are taken from the folder of the file.
+    ///
     /// # Errors
     /// When the file is not a regular one, cannot be read, is larger than [`MAX_BYTES`], nested deeper than [`MAX_NESTING`], is not JSON, or
     /// has unknown, missing or doubled keys or values of the wrong kind; the error names the file, line, column and key.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, PlanFileError> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        Self::from_json(&text_file::read(path, MAX_BYTES)?, &name)
+        let mut plan = Self::from_json(&text_file::read(path, MAX_BYTES)?, &name)?;
+        // Plans are written through links, so their files lie where the link leads.
+        let real = if path.is_symlink() { path.canonicalize().ok() } else { None };
+        if let Some(folder) = real.as_deref().unwrap_or(path).parent() {
+            plan.problem.resolve_paths(folder);
+        }
+        Ok(plan)
     }
 
     /// Reads a plan from JSON; `source_name` is how errors call the text.
+    ///
+    /// Relative paths inside are left as they are, that is relative to the working folder.
     ///
     /// # Errors
     /// As [`PlanFile::read`], except for what concerns the file system.

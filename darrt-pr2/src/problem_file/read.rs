@@ -1,10 +1,9 @@
 //! Reading a problem file: guards first, then TOML, then defaults, then validation.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::error::ProblemFileError;
 use super::nesting::check_nesting;
-use super::shape::ShapeSpec;
 use super::suggest::{nearest_expected, shown};
 use super::toml_path::path_at;
 use super::{ProblemFile, builtin};
@@ -30,10 +29,10 @@ impl ProblemFile {
         let text = text_file::read(path, MAX_BYTES)
             .map_err(|error| other_kind(FileKind::of_file(path), &name).unwrap_or_else(|| error.into()))?;
         let mut problem = parse(&text, &name)?;
+        problem.validate(&name)?;
         if let Some(folder) = path.parent() {
             problem.resolve_paths(folder);
         }
-        problem.validate(&name)?;
         Ok(problem)
     }
 
@@ -71,24 +70,6 @@ impl ProblemFile {
     /// When a count exceeds what TOML can hold (2^63 - 1); no problem that was read from TOML has one.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(self)
-    }
-
-    /// Makes relative paths start at `folder`.
-    fn resolve_paths(&mut self, folder: &Path) {
-        let files = self
-            .obstacles
-            .iter_mut()
-            .map(|obstacle| &mut obstacle.shape)
-            .chain(self.objects.iter_mut().map(|object| &mut object.shape))
-            .filter_map(|shape| match shape {
-                ShapeSpec::Mesh { file, .. } => Some(file),
-                _ => None,
-            })
-            .chain(self.robot.urdf.as_mut());
-        for file in files {
-            let resolved: PathBuf = folder.join(&*file);
-            *file = resolved;
-        }
     }
 }
 
@@ -137,6 +118,7 @@ impl ProblemFile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem_file::ShapeSpec;
     use crate::text_file::TextFileError as T;
     use darrt_geom::FileError as F;
 
