@@ -1,5 +1,5 @@
-//! Tells a problem from a plan by what a file says about itself, so that a command that is given the wrong one can say so
-//! and name the right command.
+//! Tells a problem from a plan by what a file says about itself, so that a command that is given the wrong one can say
+//! so and name the right command.
 
 use std::io::Read as _;
 use std::path::Path;

@@ -1,6 +1,9 @@
 //! A long plan told in a picture of bounded length.
 
+use std::collections::BTreeSet;
+
 use super::story::{Story, StoryStep};
+use crate::problem_file::PrimitiveName;
 
 /// Plans of at most this many steps are drawn step by step; of longer ones so many states are drawn.
 pub(super) const MOST: usize = 30;
@@ -29,18 +32,16 @@ impl Telling {
 }
 
 impl Story {
-    /// The same story; a long one with like steps in a row made one, and of what is still too much only every so manyth
-    /// state drawn. The note says how much that leaves out.
+    /// The same story. In a long one like steps in a row become one, and if that is still too much only some of the states
+    /// are drawn; the note says how much that leaves out.
     pub(super) fn abridged(&self) -> Self {
         let count = self.steps.len();
         if count <= MOST {
             return self.clone();
         }
         let (steps, mut tellings) = merged(&self.steps);
-        // Evenly, the last among them: it is the goal.
-        let last = steps.len().saturating_sub(1);
-        let drawn: Vec<usize> = (0..MOST).map(|i| i * last / (MOST - 1)).collect();
         if steps.len() > MOST {
+            let drawn = chosen(&steps);
             for (index, telling) in tellings.iter_mut().enumerate() {
                 telling.is_drawn = drawn.contains(&index);
             }
@@ -64,6 +65,27 @@ impl Story {
     }
 }
 
+/// The steps that are drawn: first those that change how an object stands, then the others, each kind evenly.
+fn chosen(steps: &[StoryStep]) -> BTreeSet<usize> {
+    let tells = |index: &usize| {
+        let primitive = steps.get(*index).map(|step| step.primitive);
+        let acts = matches!(primitive, Some(PrimitiveName::Push | PrimitiveName::Pick | PrimitiveName::Place));
+        // The last state is the goal.
+        acts || index + 1 == steps.len()
+    };
+    let (first, then): (Vec<usize>, Vec<usize>) = (0..steps.len()).partition(tells);
+    let mut drawn: BTreeSet<usize> = evenly(&first, MOST).collect();
+    drawn.extend(evenly(&then, MOST - drawn.len().min(MOST)));
+    drawn
+}
+
+/// At most `count` of the indices at even distances, the last among them.
+fn evenly(indices: &[usize], count: usize) -> impl Iterator<Item = usize> {
+    let taken = count.min(indices.len());
+    let place = move |i: usize| (i + 1) * indices.len() / taken.max(1) - 1;
+    (0..taken).filter_map(move |i| indices.get(place(i)).copied())
+}
+
 /// Steps of one primitive and object in a row become one.
 fn merged(steps: &[StoryStep]) -> (Vec<StoryStep>, Vec<Telling>) {
     let mut merged: Vec<StoryStep> = Vec::new();
@@ -81,4 +103,18 @@ fn merged(steps: &[StoryStep]) -> (Vec<StoryStep>, Vec<Telling>) {
         }
     }
     (merged, tellings)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn even_choices_end_with_the_last() {
+        let choice = |length: usize, count| evenly(&(0..length).collect::<Vec<_>>(), count).collect::<Vec<_>>();
+        assert_eq!(choice(10, 5), [1, 3, 5, 7, 9]);
+        assert_eq!(choice(7, 3), [1, 3, 6]);
+        assert_eq!(choice(3, 5), [0, 1, 2]);
+        assert!(choice(3, 0).is_empty() && choice(0, 3).is_empty());
+    }
 }
