@@ -30,7 +30,10 @@ pub enum GeomError {
         maximum: f64,
     },
     /// A list is too short or too long.
-    #[error("{name} has {count} entries, but must have between {minimum} and {maximum}")]
+    #[error(
+        "{name} has {count} {}, but must have between {minimum} and {maximum}",
+        if *count == 1 { "entry" } else { "entries" }
+    )]
     Count {
         /// The list.
         name: String,

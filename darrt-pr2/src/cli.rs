@@ -35,6 +35,8 @@ use args::{Arguments, Command};
 pub use exit::{Exit, Failure};
 use output::Output;
 
+use crate::words::printable;
+
 /// Runs the program with these arguments, the program's name first, and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let command = match Arguments::try_parse_from(arguments) {
@@ -48,7 +50,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     match dispatch(&command) {
         Ok(exit) => exit.into(),
         Err(failure) => {
-            let _ = writeln!(std::io::stderr().lock(), "error: {}", failure.message);
+            let _ = writeln!(std::io::stderr().lock(), "error: {}", printable(&failure.message));
             failure.exit.into()
         }
     }

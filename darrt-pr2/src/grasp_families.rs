@@ -10,12 +10,58 @@ use darrt_primitives::manipulator::Hand;
 
 use crate::problem_file::{GraspFamily, Object, ShapeSpec};
 
+/// A family of grasps that does not fit its object.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("`{key}`: {source}")]
+pub struct GraspFlaw {
+    /// The key at fault, from the object on, such as `overhead.opening_m`.
+    pub key: String,
+    /// What is wrong with it.
+    pub source: PrimitiveError,
+}
+
 /// Every family that `object` names, for the gripper `hand`.
 ///
 /// # Errors
-/// [`PrimitiveError`] when the object does not fit between the fingers or a parameter is out of range.
-pub fn families(object: &Object, hand: &dyn Hand) -> Result<Vec<Box<dyn Family>>, PrimitiveError> {
-    object.grasps.iter().map(|family| one(*family, object, hand)).collect()
+/// [`GraspFlaw`] when the object does not fit between the fingers or a parameter is out of range.
+pub fn families(object: &Object, hand: &dyn Hand) -> Result<Vec<Box<dyn Family>>, GraspFlaw> {
+    object.grasps.iter().map(|family| one(*family, object, hand).map_err(|error| flaw(*family, error))).collect()
+}
+
+/// Names the key of the problem file that an error of a family is about.
+fn flaw(family: GraspFamily, error: PrimitiveError) -> GraspFlaw {
+    use PrimitiveError as E;
+    let family = match family {
+        GraspFamily::Rim => "rim",
+        GraspFamily::Overhead => "overhead",
+        GraspFamily::Side => "side",
+    };
+    let name = match &error {
+        E::NotFinite { name, .. }
+        | E::NotPositive { name, .. }
+        | E::OutOfRange { name, .. }
+        | E::NotBelow { name, .. }
+        | E::WrongCount { name, .. }
+        | E::Empty { name } => *name,
+        _ => "",
+    };
+    let key = match name {
+        "open finger gap" | "held thickness" => "opening_m",
+        "grasp approach" => "approach_m",
+        "fingertip insertion" | "fingertip depth" | "fingertip reach past the axis" => "insertion_m",
+        "azimuth grid" => "azimuths",
+        name if name.contains("tilt") || name.contains("lean") => "tilts_deg",
+        _ => return GraspFlaw { key: "shape".to_owned(), source: error },
+    };
+    let source = match error {
+        // The file has degrees.
+        E::OutOfRange { name, value, low, high } if key == "tilts_deg" => {
+            let [value, low, high] = [value, low, high].map(|angle| (angle.to_degrees() * 1e9).round() / 1e9);
+            E::OutOfRange { name, value, low, high }
+        }
+        error => error,
+    };
+    GraspFlaw { key: format!("{family}.{key}"), source }
 }
 
 /// How far the object is lifted by the families it names: least and best, metres. Half the wish is enough.
@@ -35,7 +81,14 @@ fn one(family: GraspFamily, object: &Object, hand: &dyn Hand) -> Result<Box<dyn 
         tip_ahead: hand.tip_beyond_tool_m(closed_gap),
         approach,
     };
-    let missing = |what: &str| PrimitiveError::Unknown { what: "shape for these grasps", name: what.to_owned() };
+    let missing = |kind: &str| {
+        let fit = match family {
+            GraspFamily::Rim => "rim grasps take a cylinder or a bowl",
+            GraspFamily::Overhead => "overhead grasps take a box, a cylinder, a capsule or a bowl",
+            GraspFamily::Side => "side grasps take a box, a cylinder or a capsule",
+        };
+        PrimitiveError::Malformed { what: "the shape", detail: format!("{fit}, this is a {kind}") }
+    };
     Ok(match (family, &object.shape) {
         (GraspFamily::Rim, ShapeSpec::Cylinder { radius, height } | ShapeSpec::Bowl { radius, height, .. }) => {
             let rim = &object.rim;
@@ -99,4 +152,41 @@ fn least(values: &[f64]) -> f64 {
 
 fn most(values: &[f64]) -> f64 {
     values.iter().copied().reduce(f64::max).unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem_file::builtin;
+    use crate::robot::Gripper;
+
+    /// What is said about the object of a built-in problem after an edit.
+    fn said(problem: &str, edit: impl Fn(&mut Object)) -> String {
+        let mut object = builtin(problem).unwrap().objects.remove(0);
+        families(&object, &Gripper).unwrap();
+        edit(&mut object);
+        families(&object, &Gripper).map(|_| ()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn flaws_name_family_and_key_in_the_units_of_the_file() {
+        assert_eq!(
+            said("plate1", |o| o.rim.opening_m = 0.02),
+            "`rim.opening_m`: held thickness must be below 0.02, found 0.02"
+        );
+        assert_eq!(
+            said("plate1", |o| o.rim.insertion_m = 0.15),
+            "`rim.insertion_m`: fingertip insertion must be below 0.14, found 0.15"
+        );
+        assert_eq!(
+            said("bowl", |o| o.overhead.tilts_deg = vec![0.0, 70.0]),
+            "`overhead.tilts_deg`: largest lean must lie in [0, 60], found 70"
+        );
+        assert!(said("bowl", |o| o.overhead.approach_m = 0.0).starts_with("`overhead.approach_m`: "));
+        let sphere = said("plate1", |o| {
+            o.grasps = vec![GraspFamily::Side];
+            o.shape = ShapeSpec::Sphere { radius: 0.03 };
+        });
+        assert!(sphere.starts_with("`shape`: ") && sphere.contains("this is a sphere"), "{sphere}");
+    }
 }

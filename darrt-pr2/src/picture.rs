@@ -8,11 +8,13 @@
 //! |---|---|
 //! | what is told? | [`story`] |
 //! | how far does what move in a step? | [`travel`] |
+//! | how is a long plan told shortly? | `abridged` |
 //! | where on the page is a point of the world? | `view` |
 //! | what is the silhouette of a solid? | `outline` |
 //! | how are the room, the robot, the ways drawn? | `room`, `figure`, `journey` |
 //! | what is on the page? | `page`, `overview`, `filmstrip` |
 
+mod abridged;
 mod badge;
 mod figure;
 mod filmstrip;
@@ -124,9 +126,10 @@ pub enum Extent {
     Overview,
 }
 
-/// The text of the picture file; the same story gives the same bytes.
+/// The text of the picture file; the same story gives the same bytes. Of a long plan only some steps are drawn, which the
+/// picture says.
 pub fn draw(story: &Story, format: Format, extent: Extent) -> String {
-    let image = page::draw(story, extent);
+    let image = page::draw(&story.abridged(), extent);
     match format {
         Format::Svg => format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{image}\n"),
         Format::Html => {

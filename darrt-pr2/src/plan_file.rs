@@ -4,13 +4,14 @@
 //! |---|---|
 //! | how is a file read without trusting it? | [`read`] |
 //! | how is it written so that it is never half there? | [`mod@write`] |
-//! | which joints does a waypoint list? | [`joints`] |
+//! | which joints does a waypoint list? | [`joints`], [`complete`] |
 //! | what does the published schema say? | [`schema`](crate::schema) |
 //!
 //! `docs/plan-format.md` explains the meaning of every key to readers without this code. SI units, radians, world frame
 //! with the floor at z = 0, quaternions `[x, y, z, w]`. No times are stored: one problem and one seed give one file,
 //! byte for byte.
 
+pub mod complete;
 pub mod error;
 pub mod joints;
 mod json;

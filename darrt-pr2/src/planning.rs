@@ -144,6 +144,7 @@ pub struct Prepared {
 /// primitive, a robot or shape that cannot be built.
 pub fn prepare(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, PlanningError> {
     check_companions(file)?;
+    crate::goal_means::check_means(file)?;
     let Built { world, start, goal, scene } = world::build(file)?;
     let validity = SceneValidity::new(&world);
     crate::goal_check::check_goal(&world, &goal, &scene)?;

@@ -1,8 +1,8 @@
 //! What can keep a problem from being planned at all.
 
 use darrt_geom::GeomError;
-use darrt_primitives::error::PrimitiveError;
 
+use crate::grasp_families::GraspFlaw;
 use crate::model::ModelError;
 use crate::plan_file::PlanFileError;
 use crate::problem_file::ProblemFileError;
@@ -27,12 +27,14 @@ pub enum PlanningError {
     #[error(transparent)]
     PlanFile(#[from] PlanFileError),
     /// A family of grasps does not fit its object.
-    #[error("object `{object}`: its grasps cannot be used: {source}")]
+    #[error("the grasps of `{object}` cannot be used: `object[{index}].{}`: {}", flaw.key, flaw.source)]
     Grasp {
         /// The object.
         object: String,
-        /// Why.
-        source: PrimitiveError,
+        /// Its index in the file.
+        index: usize,
+        /// The key at fault, and why.
+        flaw: GraspFlaw,
     },
     /// An arm's start has the wrong number of joints.
     #[error("{key}: the arm's start has {found} joints, it must have 7")]
@@ -61,6 +63,14 @@ pub enum PlanningError {
         object: String,
         /// What is in the way, and where.
         blame: String,
+    },
+    /// The primitives and grasps of the problem do not suffice for any of the goals of an object.
+    #[error("the goal of `{object}` cannot be reached: {why}")]
+    GoalWithoutMeans {
+        /// The object.
+        object: String,
+        /// What each of its goals lacks.
+        why: String,
     },
     /// A primitive needs another one that the problem leaves out.
     #[error("`{primitive}` is allowed but not `{needs}`, which it is made of")]

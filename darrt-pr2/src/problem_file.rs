@@ -15,6 +15,7 @@ pub mod grasps;
 pub mod layout;
 pub mod nesting;
 pub mod object;
+pub(crate) mod paths;
 pub mod primitive_name;
 pub mod read;
 pub mod robot;
@@ -22,6 +23,7 @@ pub mod settings;
 pub mod shape;
 pub mod suggest;
 mod toml_path;
+pub mod upper_face;
 pub mod validate;
 pub mod world;
 

@@ -150,14 +150,17 @@ impl Pr2 {
 /// Every joint of an arm is inside its limits.
 fn check_start(model: &Pr2Model, side: Side, kind: LimitKind, rest: &WholeBody) -> Result<(), ModelError> {
     let values = rest.arms.get(side.index()).into_iter().flatten();
-    for ((name, limit), &value) in JOINT_NAMES.iter().zip(model.limits(side, kind)).zip(values) {
+    let limits = model.limits(side, kind).into_iter().zip(model.limits(side, LimitKind::Hard));
+    for ((name, (limit, hard)), &value) in JOINT_NAMES.iter().zip(limits).zip(values) {
         if !limit.contains(value) {
             let which = match kind {
                 LimitKind::Soft => "soft",
                 LimitKind::Hard => "hard",
             };
             let joint = format!("{}_{name}_joint", side.prefix());
-            return Err(ModelError::StartOutside { joint, value, which, lower: limit.lower, upper: limit.upper });
+            let would_do_hard = kind == LimitKind::Soft && hard.contains(value);
+            let (lower, upper) = (limit.lower, limit.upper);
+            return Err(ModelError::StartOutside { joint, value, which, lower, upper, would_do_hard });
         }
     }
     Ok(())

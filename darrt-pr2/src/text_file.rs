@@ -7,6 +7,8 @@ use darrt_geom::FileError;
 use darrt_geom::bounded_file;
 use thiserror::Error;
 
+use crate::words::on_one_line;
+
 /// Deepest accepted nesting of brackets (and of dotted keys in TOML).
 pub const MAX_NESTING: usize = 64;
 
@@ -69,9 +71,10 @@ pub(crate) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     (line, column)
 }
 
-/// A parser's message on one line, cut to a length that a person reads.
+/// A parser's message on one line, cut to a length that a person reads; names in it cannot act on a terminal.
 pub(crate) fn one_line(message: &str) -> String {
-    message.chars().take(MAX_MESSAGE).collect::<String>().trim_end().replace('\n', "; ")
+    let cut = message.chars().take(MAX_MESSAGE).collect::<String>().trim_end().replace('\n', "; ");
+    on_one_line(&cut).into_owned()
 }
 
 /// Puts `text` at `path` in one move: whoever looks sees the old file, the whole new one, or none.

@@ -77,7 +77,8 @@ pub fn build(problem: &ProblemFile) -> Result<Built, PlanningError> {
         .objects
         .iter()
         .zip(&geometry.objects)
-        .map(|(object, solid)| movable(problem, object, solid, surfaces, &robot))
+        .enumerate()
+        .map(|(index, (object, solid))| movable(problem, (index, object), solid, surfaces, &robot))
         .collect::<Result<Vec<_>, _>>()?;
 
     let mut settings = settings(problem, robot.arm().side)?;
@@ -156,7 +157,7 @@ fn posture_named(name: &str) -> Result<ArmPosture, PlanningError> {
 
 fn movable(
     problem: &ProblemFile,
-    object: &file::Object,
+    (index, object): (usize, &file::Object),
     solid: &file::geometry::StartingObject,
     surfaces: &[darrt_geom::SupportSurface],
     robot: &Pr2,
@@ -180,7 +181,7 @@ fn movable(
     })?;
     let ids = surfaces.iter().enumerate().filter(|(_, s)| is_allowed(s)).map(|(i, _)| SurfaceId::new(i)).collect();
     let rim = RimReach { insertion: object.rim.insertion_m, clearance: RIM_CLEARANCE, ..RimReach::default() };
-    let named = |source| PlanningError::Grasp { object: object.name.clone(), source };
+    let named = |flaw| PlanningError::Grasp { object: object.name.clone(), index, flaw };
     let movable = Movable {
         body: solid.body.clone(),
         round_radius_m: radius,

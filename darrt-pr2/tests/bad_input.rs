@@ -5,6 +5,8 @@
 
 #[path = "bad_input/desk.rs"]
 mod desk;
+#[path = "bad_input/plans.rs"]
+mod plans;
 
 use darrt_pr2::model::URDF;
 use desk::Desk;
@@ -109,7 +111,11 @@ fn numbers_are_finite_positive_and_in_range() {
 fn starts_are_possible() {
     all_refused(&[
         (POSTURE, "\njoints = [0, 0, 0, 0.2, 0, -1, 0]", &["`r_elbow_flex_joint`", "0.2", "soft", "[-2.1213, -0.15]"]),
-        (POSTURE, "\nposture = \"tucked\"", &["`r_elbow_flex_joint`", "-2.124408", "soft", "[-2.1213, -0.15]"]),
+        (
+            POSTURE,
+            "\nposture = \"tucked\"",
+            &["`r_elbow_flex_joint`", "-2.124408", "soft", "[-2.1213, -0.15]", "`limits = \"hard\"`"],
+        ),
         (
             "other_posture = \"side\"",
             "other_joints = [0, 0, 0, 0.2, 0, 0, 0]",
@@ -131,6 +137,22 @@ fn starts_are_possible() {
 }
 
 #[test]
+fn grasps_fit_their_object() {
+    all_refused(&[
+        (
+            "[object.rim]",
+            "[object.rim]\nopening_m = 0.02",
+            &["the grasps of `plate`", "`object[0].rim.opening_m`", "below 0.02, found 0.02"],
+        ),
+        (
+            "grasps = [\"rim\"]",
+            "grasps = [\"overhead\"]\noverhead = { insertion_m = 0.01 }",
+            &["the grasps of `plate`", "`object[0].overhead.opening_m`", "below 0.05, found 0.28"],
+        ),
+    ]);
+}
+
+#[test]
 fn goals_are_possible() {
     all_refused(&[
         (
@@ -147,6 +169,16 @@ fn goals_are_possible() {
             GOAL,
             "on = \"central table\"\nregion = { min = [0.05, 0.03], max = [0.08, 0.06] }",
             &["the goal of `plate` is blocked", "`big bowl`"],
+        ),
+        (
+            "  \"Place\",\n",
+            "",
+            &["the goal of `plate` cannot be reached", "`goal.object[0]`", "`side table`", "`Place` is not among"],
+        ),
+        (
+            "grasps = [\"rim\"]",
+            "grasps = []",
+            &["the goal of `plate` cannot be reached", "`goal.object[0]`", "no `grasps` for Pick"],
         ),
         ("  \"Straight-Line-Arm-Transit\",\n", "", &["`Push` is allowed but not `Straight-Line-Arm-Transit`"]),
     ]);
@@ -232,27 +264,28 @@ fn meshes_are_checked() {
 }
 
 #[test]
-fn plan_files_are_checked() {
+fn surfaces_lie_on_their_bodies() {
+    let polygon = |z: f64, far: f64, rest: &str| {
+        format!("polygon = [[-0.45, -0.6], [{far}, -0.6], [{far}, 0.6], [-0.45, 0.6]]\nz = {z}\n{rest}")
+    };
+    let body = "body = \"central table top\"";
+    let top = "top_of = \"central table top\"";
     let desk = Desk::new();
-    desk.problem("easy.toml", &[(GOAL, "on = \"central table\"\nat = [-0.20, 0.05]")]);
-    let output = desk.run(&["plan", "easy.toml", "-o", "good.json", "--no-picture", "--quiet"]);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    let good = std::fs::read_to_string(desk.path("good.json")).unwrap();
-    let cases: [(&str, &str, i32, &[&str]); 7] = [
-        ("\"seed\"", "\"seeed\"", 2, &["at `seeed`", "did you mean `seed`?"]),
-        ("\"r_elbow_flex_joint\"", "\"r_elbow_joint\"", 3, &["r_elbow"]),
-        ("-0.8,\n    0.0,\n", "1e999,\n    0.0,\n", 2, &["`problem.robot.base[0]`", "out of range"]),
-        ("-0.8,\n    0.0,\n    0.0\n", "-0.8,\n    0.0,\n    9.0\n", 3, &["`robot.base[2]`", "is 9", "3.14"]),
-        ("\"torso_m\": 0.2", "\"torso_m\": 9", 3, &["`robot.torso_m`", "is 9", "[0, 0.33]"]),
-        ("\"quaternion\": [0.0, 0.0, 0.0, 1.0]", "\"quaternion\": [0.0, 0.0, 0.0, 2.0]", 3, &["plate", "quaternion"]),
-        ("\"version\": 1", "\"version\": 9", 2, &["`version` is 9", "version 1"]),
-    ];
-    for (old, new, exit, parts) in cases {
-        assert!(good.contains(old), "the test replaces `{old}`, which is not there");
-        desk.write("bad.json", good.replacen(old, new, 1));
-        let parts: Vec<&str> = ["bad.json"].iter().chain(parts).copied().collect();
-        desk.refused(&["check", "bad.json"], exit, &parts);
-    }
+    desk.problem("good.toml", &[(top, &polygon(0.75, 0.45, body))]);
+    assert_eq!(desk.run(&["plan", "good.toml", "--iterations", "1"]).status.code(), Some(1));
+    all_refused(&[
+        (top, &polygon(0.75, 0.45, ""), &["`surface[0]`", "needs `body`"]),
+        (
+            top,
+            &polygon(0.9, 0.45, body),
+            &["`surface[0].z`", "`central table`", "0.9", "`central table top`", "at 0.75", "0.001 m"],
+        ),
+        (
+            top,
+            &polygon(0.75, 0.5, body),
+            &["`surface[0].polygon[1]`", "[0.5, -0.6]", "`central table`", "0.05 m beside", "`central table top`"],
+        ),
+    ]);
 }
 
 #[test]

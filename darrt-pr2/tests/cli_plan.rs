@@ -144,3 +144,64 @@ fn an_interrupt_ends_the_search_and_is_reported() {
     assert!(text(&output.stderr).contains("cancelled after"), "{}", text(&output.stderr));
     assert!(files(folder.path()).is_empty());
 }
+
+/// A box of 0.2 m around the origin.
+const STONE: &str = "v -0.1 -0.1 -0.1\nv 0.1 -0.1 -0.1\nv 0.1 0.1 -0.1\nv -0.1 0.1 -0.1\nv -0.1 -0.1 0.1\n\
+    v 0.1 -0.1 0.1\nv 0.1 0.1 0.1\nv -0.1 0.1 0.1\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+#[test]
+fn a_plan_finds_its_meshes_from_every_folder_and_after_a_move() {
+    let top = tempfile::tempdir().unwrap();
+    let path = |name: &str| top.path().join(name);
+    for folder in ["room/meshes", "room/plans", "elsewhere"] {
+        std::fs::create_dir_all(path(folder)).unwrap();
+    }
+    solved_problem(&path("room"));
+    std::fs::write(path("room/meshes/stone.obj"), STONE).unwrap();
+    std::fs::copy(path("room/easy.toml"), path("room/mesh.toml")).unwrap();
+    let mut text = std::fs::read_to_string(path("room/mesh.toml")).unwrap();
+    text.push_str(
+        "\n[[obstacle]]\nname = \"stone\"\nshape = { mesh = { file = \"meshes/stone.obj\" } }\nat = [2, 2, 0.2]\n",
+    );
+    std::fs::write(path("room/mesh.toml"), text).unwrap();
+    // Problem and plan named from the top, from beside, and from another place.
+    run(top.path(), &["plan", "room/mesh.toml", "-o", "room/plans/p.json", "--no-picture"], 0);
+    run(&path("room"), &["plan", "mesh.toml", "--no-picture"], 0);
+    let all = [path("room/mesh.toml"), path("elsewhere/p.json")].map(|path| path.to_str().unwrap().to_owned());
+    run(&path("elsewhere"), &["plan", &all[0], "-o", &all[1], "--no-picture"], 0);
+    let plan = std::fs::read_to_string(path("room/plans/p.json")).unwrap();
+    assert!(plan.contains("\"../meshes/stone.obj\""), "{plan}");
+
+    run(top.path(), &["check", "room/plans/p.json"], 0);
+    run(&path("room/plans"), &["check", "p.json"], 0);
+    run(&path("elsewhere"), &["check", "../room/mesh.plan.json"], 0);
+    run(&path("elsewhere"), &["show", "../room/mesh.plan.json", "-o", "p.html"], 0);
+    run(Path::new("/"), &["check", &all[1]], 0);
+    std::fs::rename(path("room"), path("moved")).unwrap();
+    run(top.path(), &["check", "moved/plans/p.json"], 0);
+    run(top.path(), &["check", "moved/mesh.plan.json"], 0);
+
+    // Without its mesh it is not wrong, it cannot be read.
+    let (_, complaint) = run(&path("elsewhere"), &["check", "p.json"], 2);
+    for words in ["p.json: ", "`obstacle[", "meshes/stone.obj: cannot be read: "] {
+        assert!(complaint.contains(words), "{words}: {complaint}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_plan_written_through_a_link_is_read_through_it() {
+    let top = tempfile::tempdir().unwrap();
+    let path = |name: &str| top.path().join(name);
+    std::fs::create_dir_all(path("store")).unwrap();
+    solved_problem(top.path());
+    std::fs::write(path("stone.obj"), STONE).unwrap();
+    let mut text = std::fs::read_to_string(path("easy.toml")).unwrap();
+    text.push_str("\n[[obstacle]]\nname = \"stone\"\nshape = { mesh = { file = \"stone.obj\" } }\nat = [2, 2, 0.2]\n");
+    std::fs::write(path("easy.toml"), text).unwrap();
+    std::fs::write(path("store/p.json"), "").unwrap();
+    std::os::unix::fs::symlink("store/p.json", path("p.json")).unwrap();
+    run(top.path(), &["plan", "easy.toml", "-o", "p.json", "--no-picture"], 0);
+    run(top.path(), &["check", "p.json"], 0);
+    run(top.path(), &["check", "store/p.json"], 0);
+}

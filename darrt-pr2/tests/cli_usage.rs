@@ -71,6 +71,24 @@ fn bad_usage_is_one_message_and_exit_code_2() {
 }
 
 #[test]
+fn bad_numbers_are_answered_with_their_bound() {
+    let folder = tempfile::tempdir().unwrap();
+    for (option, values, bound) in [
+        ("--seed", &["-1", "1.5", "x"][..], "a whole number from 0 to 18446744073709551615"),
+        ("--iterations", &["-5", "0"], "a whole number from 1 to 18446744073709551615"),
+        ("--restart", &["-5", "0", "--stats"], "a whole number from 1 to 18446744073709551615"),
+        ("--threads", &["-2", "0", "257"], "a whole number from 1 to 256"),
+        ("--time-limit", &["-3", "0", "1e300", "inf", "-inf", "nan"], "a number of seconds above 0 and at most 1e9"),
+    ] {
+        for value in values {
+            let message = refused(folder.path(), &["plan", "plate1", option, value], 2);
+            assert!(message.contains(&format!("invalid value '{value}' for '{option} ")), "{message}");
+            assert!(message.contains(bound) && !message.contains("tip:"), "{message}");
+        }
+    }
+}
+
+#[test]
 fn problems_are_listed_and_printed_to_be_copied() {
     let folder = tempfile::tempdir().unwrap();
     let list = stdout(&darrt(folder.path(), &["problems"]));

@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::builder::RangedU64ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::problem_file::{DistanceName, SamplerName};
+
+/// Most attempts at the same time.
+const MOST_THREADS: u64 = 256;
 
 /// Plan how a PR2 pushes, grasps, carries and places things.
 ///
@@ -70,16 +72,16 @@ pub struct PlanOptions {
     /// Name of a built-in problem, or a problem file
     pub problem: String,
     /// Seed of every random choice
-    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
     pub seed: u64,
     /// Stop after this many seconds [default: as the problem says]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
     pub time_limit: Option<Duration>,
     /// Stop after this many iterations, all attempts together [default: as the problem says]
-    #[arg(long, value_name = "NUMBER", value_parser = RangedU64ValueParser::<u64>::new().range(1..))]
+    #[arg(long, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true)]
     pub iterations: Option<u64>,
     /// Start over with an empty tree after this many iterations [default: as the problem says]
-    #[arg(long, value_name = "ITERATIONS", value_parser = RangedU64ValueParser::<u64>::new().range(1..))]
+    #[arg(long, value_name = "ITERATIONS", value_parser = positive, allow_hyphen_values = true)]
     pub restart: Option<u64>,
     /// What a sample specifies [default: as the problem says]
     #[arg(long, value_enum)]
@@ -88,7 +90,7 @@ pub struct PlanOptions {
     #[arg(long, value_enum)]
     pub distance: Option<DistanceChoice>,
     /// Attempts that run at the same time, 1 to 256; helps only with restarts
-    #[arg(long, default_value_t = 1, value_name = "NUMBER", value_parser = RangedU64ValueParser::<usize>::new().range(1..=256))]
+    #[arg(long, default_value_t = 1, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
     pub threads: usize,
     /// Write the plan here [default: PROBLEM.plan.json in the current folder, without the problem's own ending]
     #[arg(short, long, value_name = "FILE")]
@@ -200,14 +202,32 @@ impl From<DistanceChoice> for DistanceName {
     }
 }
 
+/// A whole number from `least` to `most`, in a message that says so whatever is wrong.
+// What looks like an option, such as `-1`, is let through to here: the parser's own answer would be about options.
+fn whole(text: &str, least: u64, most: u64) -> Result<u64, String> {
+    let value = text.parse().ok().filter(|value| (least..=most).contains(value));
+    value.ok_or_else(|| format!("must be a whole number from {least} to {most}"))
+}
+
+fn any_count(text: &str) -> Result<u64, String> {
+    whole(text, 0, u64::MAX)
+}
+
+fn positive(text: &str) -> Result<u64, String> {
+    whole(text, 1, u64::MAX)
+}
+
+fn threads(text: &str) -> Result<usize, String> {
+    whole(text, 1, MOST_THREADS).and_then(|count| usize::try_from(count).map_err(|error| error.to_string()))
+}
+
 /// A positive time in seconds.
 fn seconds(text: &str) -> Result<Duration, String> {
     const MOST: f64 = 1e9;
-    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if value > 0.0 && value <= MOST {
-        return Duration::try_from_secs_f64(value).map_err(|error| error.to_string());
-    }
-    Err(format!("{value} is not above 0 and at most {MOST:e} seconds"))
+    let value = text.parse().ok().filter(|value: &f64| *value > 0.0 && *value <= MOST);
+    // Less than the clock can tell would be no time at all.
+    let time = value.and_then(|value| Duration::try_from_secs_f64(value).ok()).filter(|time| !time.is_zero());
+    time.ok_or_else(|| format!("must be a number of seconds above 0 and at most {MOST:e}"))
 }
 
 #[cfg(test)]
@@ -223,9 +243,19 @@ mod tests {
     #[test]
     fn times_are_positive_and_finite() {
         assert_eq!(seconds("1.5").unwrap(), Duration::from_millis(1500));
-        for bad in ["0", "-1", "nan", "inf", "1e10", "soon", ""] {
-            assert!(seconds(bad).is_err(), "{bad}");
+        for bad in ["0", "-1", "nan", "inf", "1e10", "1e300", "1e-300", "soon", ""] {
+            assert_eq!(seconds(bad).unwrap_err(), "must be a number of seconds above 0 and at most 1e9", "{bad}");
         }
+    }
+
+    #[test]
+    fn counts_are_whole_and_in_range() {
+        assert_eq!((any_count("0"), any_count("18446744073709551615")), (Ok(0), Ok(u64::MAX)));
+        for bad in ["-1", "1.5", "18446744073709551616", "--quiet", ""] {
+            assert_eq!(any_count(bad).unwrap_err(), "must be a whole number from 0 to 18446744073709551615", "{bad}");
+        }
+        assert!(positive("0").is_err() && threads("257").is_err());
+        assert_eq!(threads("256"), Ok(256));
     }
 
     #[test]

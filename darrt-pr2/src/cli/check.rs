@@ -1,22 +1,28 @@
 //! `darrt check`: judge a plan.
 
+use std::path::Path;
+
 use super::args::CheckOptions;
 use super::exit::{Exit, Failure};
 use super::output::Output;
 use super::steps;
 use crate::picture::Story;
 use crate::plan_file::PlanFile;
+use crate::problem_file::builtin;
 use crate::verify::{self, Proof, SmallestClearance};
+use crate::words::{counted, on_one_line};
 
 /// Reads a plan and has it verified.
 ///
 /// # Errors
 /// [`Exit::Refused`] with the step, the time and the bodies; [`Exit::BadInput`] for a file that is no plan file.
 pub(super) fn run(options: &CheckOptions, output: &mut Output) -> Result<Exit, Failure> {
-    let plan = PlanFile::read(&options.plan)?;
+    let plan = read(&options.plan)?;
     let name = options.plan.display();
-    let refuse = |refusal| Failure::new(Exit::Refused, format!("{name}: refused: {refusal}"));
-    let proof = verify::verify(&plan).map_err(refuse)?;
+    let refuse = |why: String| Failure::new(Exit::Refused, on_one_line(&format!("{name}: refused: {why}")));
+    plan.problem.check_files().map_err(|error| Failure::input(format!("{name}: {error}")))?;
+    plan.check_complete().map_err(|flaw| refuse(flaw.to_string()))?;
+    let proof = verify::verify(&plan).map_err(|refusal| refuse(refusal.to_string()))?;
     if options.steps {
         output.print(&steps::table(&Story::of_plan(&plan)?))?;
     }
@@ -26,10 +32,22 @@ pub(super) fn run(options: &CheckOptions, output: &mut Output) -> Result<Exit, F
     Ok(Exit::Solved)
 }
 
+fn read(path: &Path) -> Result<PlanFile, Failure> {
+    PlanFile::read(path).map_err(|error| {
+        let name = path.to_str().filter(|name| !path.exists() && builtin::canonical_name(name).is_some());
+        let built_in = |name| format!("{name}: is a built-in problem, not a plan; plan it with `darrt plan {name}`");
+        name.map_or_else(|| error.into(), |name| Failure::input(built_in(name)))
+    })
+}
+
 /// What the verifier has seen.
 pub(super) fn words(proof: &Proof) -> String {
-    let mut text =
-        format!("verified: {} states of {} waypoints in {} steps", proof.states, proof.waypoints, proof.steps);
+    let mut text = format!(
+        "verified: {} of {} in {}",
+        counted(proof.states, "state"),
+        counted(proof.waypoints as u64, "waypoint"),
+        counted(proof.steps as u64, "step")
+    );
     if let Some(smallest) = &proof.smallest_clearance {
         text.push_str(&clearance(smallest));
     }

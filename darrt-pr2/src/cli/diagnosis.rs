@@ -6,6 +6,7 @@ use darrt_core::budget::Stop;
 use darrt_core::observe::accounts::{Accounts, Bucket};
 
 use crate::planning::PlanResult;
+use crate::words::counted;
 
 /// Pairs of bodies that are named.
 const PAIRS: usize = 3;
@@ -16,12 +17,12 @@ const UNTRIED: [Bucket; 3] = [Bucket::NotUseful, Bucket::NotChosen, Bucket::Budg
 /// Several lines: why it stopped, how near it came, what was in the way, which primitive never worked, what may help.
 pub(super) fn explain(result: &PlanResult) -> String {
     let mut text = format!(
-        "{} after {:.1} s, {} iterations, {} restarts, largest tree {} nodes",
+        "{} after {:.1} s, {}, {}, largest tree {}",
         result.stop,
         result.elapsed.as_secs_f64(),
-        result.iterations,
-        result.restarts,
-        result.nodes
+        counted(result.iterations, "iteration"),
+        counted(result.restarts, "restart"),
+        counted(result.nodes as u64, "node")
     );
     let mut line = |words: String| {
         // Writing to a string cannot fail.
@@ -31,7 +32,7 @@ pub(super) fn explain(result: &PlanResult) -> String {
         line(format!("nearest to the goal: {:.3} m (by the planner's distance)", result.nearest_to_goal));
     }
     for ((first, second), count) in result.accounts.worst_blocks(PAIRS) {
-        line(format!("in the way {count} times: {first} and {second}"));
+        line(format!("in the way {}: {first} and {second}", counted(count, "time")));
     }
     never_worked(&result.accounts).into_iter().for_each(&mut line);
     if let Some(refusal) = &result.last_refusal {
@@ -57,7 +58,8 @@ fn never_worked(accounts: &Accounts) -> Vec<String> {
         let ends = Bucket::ALL.into_iter().filter(|bucket| !UNTRIED.contains(bucket));
         // The first of equals, so that the words do not depend on anything else.
         let most = ends.rev().max_by_key(|bucket| of(*bucket))?;
-        Some(format!("{name} never succeeded in {tried} tries, mostly: {} ({})", most.heading(), of(most)))
+        let tries = if tried == 1 { "its only try".to_owned() } else { format!("{tried} tries, mostly") };
+        Some(format!("{name} never succeeded in {tries}: {} ({})", most.heading(), of(most)))
     };
     accounts.rows().filter_map(describe).collect()
 }

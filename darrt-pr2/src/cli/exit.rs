@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use crate::picture::PictureError;
 use crate::plan_file::PlanFileError;
 use crate::problem_file::ProblemFileError;
+use crate::words::on_one_line;
 
 /// The exit codes, for scripts. They are part of the interface and written in `darrt --help`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,9 +45,9 @@ impl Failure {
         Self { exit, message: message.into() }
     }
 
-    /// Bad input or usage.
-    pub fn input(message: impl Into<String>) -> Self {
-        Self::new(Exit::BadInput, message)
+    /// Bad input or usage: one line, whatever the names in it.
+    pub fn input(message: impl AsRef<str>) -> Self {
+        Self::new(Exit::BadInput, on_one_line(message.as_ref()))
     }
 }
 
@@ -68,6 +69,6 @@ impl From<PlanFileError> for Failure {
             PlanFileError::Write { .. } => Exit::CannotWrite,
             _ => Exit::BadInput,
         };
-        Self::new(exit, error.to_string())
+        Self::new(exit, on_one_line(&error.to_string()))
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::exit::{Exit, Failure};
 use crate::text_file;
+use crate::words::printable;
 
 /// Where results are printed. A reader that closes its end is not an error: the rest is dropped.
 pub(super) struct Output {
@@ -23,7 +24,7 @@ impl Output {
         Self { to, is_closed: false }
     }
 
-    /// Prints one text, ended by a line feed if it has none.
+    /// Prints one text, ended by a line feed if it has none; what a terminal would act on is escaped.
     ///
     /// # Errors
     /// [`Exit::CannotWrite`] when the text cannot be written, a closed pipe excepted.
@@ -31,6 +32,7 @@ impl Output {
         if self.is_closed {
             return Ok(());
         }
+        let text = printable(text);
         let end = if text.ends_with('\n') { "" } else { "\n" };
         let written = self.to.write_all(text.as_bytes()).and_then(|()| self.to.write_all(end.as_bytes()));
         match written.and_then(|()| self.to.flush()) {

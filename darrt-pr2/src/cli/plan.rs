@@ -14,6 +14,7 @@ use crate::picture::{self, Extent, Format, Story};
 use crate::plan_file::PlanFile;
 use crate::planning::{self, PlanRequest, PlanResult};
 use crate::problem_file::ProblemFile;
+use crate::words::counted;
 
 /// Plans and reports.
 ///
@@ -81,13 +82,13 @@ fn failed(request: &PlanRequest, result: &PlanResult) -> Failure {
 
 fn summary(request: &PlanRequest, result: &PlanResult) -> String {
     format!(
-        "{}: solved in {:.1} s (seed {}, {} iterations, {} restarts, largest tree {} nodes)",
+        "{}: solved in {:.1} s (seed {}, {}, {}, largest tree {})",
         request.problem.name,
         result.elapsed.as_secs_f64(),
         request.seed,
-        result.iterations,
-        result.restarts,
-        result.nodes
+        counted(result.iterations, "iteration"),
+        counted(result.restarts, "restart"),
+        counted(result.nodes as u64, "node")
     )
 }
 

@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 use darrt_core::observe::{Event, Observer};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::words::{counted, printable};
+
 /// Time between two drawings of the line.
 const PERIOD: Duration = Duration::from_millis(100);
 
@@ -35,7 +37,7 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template("{spinner} {prefix}: {wide_msg}") {
             bar.set_style(style);
         }
-        bar.set_prefix(problem.to_owned());
+        bar.set_prefix(printable(problem).into_owned());
         bar.set_message("preparing");
         bar.enable_steady_tick(PERIOD);
         let now = Instant::now();
@@ -70,9 +72,9 @@ impl Counts {
 
     fn line(&self, left: Option<Duration>) -> String {
         let near = self.nearest.is_finite().then(|| format!("{:.2} m to the goal", self.nearest));
-        let restarts = (self.restarts > 0).then(|| format!("{} restarts", self.restarts));
+        let restarts = (self.restarts > 0).then(|| counted(self.restarts, "restart"));
         let left = left.map(|left| format!("{} s left", left.as_secs()));
-        let work = [format!("{} iterations", self.iterations), format!("tree {}", self.nodes)];
+        let work = [counted(self.iterations, "iteration"), format!("tree {}", self.nodes)];
         work.into_iter().chain(near).chain(restarts).chain(left).collect::<Vec<_>>().join(", ")
     }
 }
@@ -103,6 +105,6 @@ mod tests {
             counts.add(&Event::Iteration { attempt, iteration, nodes, added, nearest_to_goal, blame });
         }
         let line = counts.line(Some(Duration::from_millis(4900)));
-        assert_eq!(line, "3 iterations, tree 2, 1.50 m to the goal, 1 restarts, 4 s left");
+        assert_eq!(line, "3 iterations, tree 2, 1.50 m to the goal, 1 restart, 4 s left");
     }
 }

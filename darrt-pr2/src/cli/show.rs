@@ -1,12 +1,12 @@
 //! `darrt show`: draw a problem or a plan.
 
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use super::args::ShowOptions;
 use super::exit::{Exit, Failure};
 use super::output::{self, Output};
 use super::steps;
+use crate::file_kind;
 use crate::picture::{self, Extent, Format, Story};
 use crate::plan_file::PlanFile;
 use crate::problem_file::{ProblemFile, builtin};
@@ -44,13 +44,7 @@ fn is_plan(path: &Path) -> bool {
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
         return true;
     }
-    // Only regular files: anything else might never answer.
-    if !path.is_file() {
-        return false;
-    }
-    let mut head = [0; 256];
-    let length = std::fs::File::open(path).and_then(|mut file| file.read(&mut head)).unwrap_or(0);
-    head.get(..length).is_some_and(|head| head.trim_ascii_start().starts_with(b"{"))
+    file_kind::is_json(&file_kind::head(path))
 }
 
 #[cfg(test)]

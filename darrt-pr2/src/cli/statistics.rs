@@ -6,6 +6,7 @@ use comfy_table::ContentArrangement;
 use darrt_core::observe::accounts::{Accounts, Bucket};
 
 use super::table;
+use crate::words::counted;
 
 /// Pairs of bodies that are listed.
 const PAIRS: usize = 10;
@@ -15,9 +16,13 @@ const WIDTH: u16 = 118;
 /// Where the attempts of every primitive ended, and which bodies were most often in the way.
 pub(super) fn report(accounts: &Accounts) -> String {
     let mut text = format!(
-        "{} extensions: {} met their target, {} added nothing; {} states added; {} plans refused by the verifier\n\
+        "{}: {} met their target, {} added nothing; {} added; {} refused by the verifier\n\
          Every extension ends in one row of each primitive's column.\n",
-        accounts.extensions, accounts.met, accounts.empty, accounts.added, accounts.refused
+        counted(accounts.extensions, "extension"),
+        accounts.met,
+        accounts.empty,
+        counted(accounts.added, "state"),
+        counted(accounts.refused, "plan")
     );
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{}", counts(accounts));

@@ -47,7 +47,10 @@ pub enum ModelError {
         bound: f64,
     },
     /// A joint of an arm starts outside its limits.
-    #[error("joint `{joint}` starts at {value} rad, outside its {which} limits [{lower}, {upper}]")]
+    #[error(
+        "joint `{joint}` starts at {value} rad, outside its {which} limits [{lower}, {upper}]{}",
+        if *would_do_hard { "; `limits = \"hard\"` in `[robot]` allows it" } else { "" }
+    )]
     StartOutside {
         /// The joint.
         joint: String,
@@ -59,6 +62,8 @@ pub enum ModelError {
         lower: f64,
         /// Upper limit, rad.
         upper: f64,
+        /// Whether it is inside the hard limits, so that the problem only has to ask for those.
+        would_do_hard: bool,
     },
     /// The torso height is out of range.
     #[error("torso height {value} m is outside [{lower}, {upper}] m")]

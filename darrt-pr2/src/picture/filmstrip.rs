@@ -33,8 +33,8 @@ const MARGIN: f64 = 0.12;
 pub(super) fn draw(story: &Story, room: &Room, left: f64, top: f64, width: f64, page: &mut Element) -> f64 {
     let frame = (width - GAP * (COLUMNS as f64 - 1.0)) / COLUMNS as f64;
     let height = frame * ASPECT;
-    for (index, step) in story.steps.iter().enumerate() {
-        let (row, column) = (index / COLUMNS, index % COLUMNS);
+    for (place, (index, step)) in story.drawn_steps().enumerate() {
+        let (row, column) = (place / COLUMNS, place % COLUMNS);
         let offset = Vector2::new(column as f64 * (frame + GAP), row as f64 * (height + CAPTION));
         let corner = Point2::new(left, top) + offset;
         let view = view(story, index, step, frame, height);
@@ -43,7 +43,7 @@ pub(super) fn draw(story: &Story, room: &Room, left: f64, top: f64, width: f64, 
         Panel { corner, view }.draw("", content, page);
         draw_caption(story, index, step, &(corner + Vector2::new(0.0, height)), frame, page);
     }
-    story.steps.len().div_ceil(COLUMNS) as f64 * (height + CAPTION)
+    story.drawn_steps().count().div_ceil(COLUMNS) as f64 * (height + CAPTION)
 }
 
 /// A window about the robot before and after the step and all that moves in between.
@@ -101,12 +101,14 @@ fn draw_hand_way(story: &Story, step: &StoryStep, view: &View, group: &mut Eleme
 
 fn draw_caption(story: &Story, index: usize, step: &StoryStep, at: &Point2<f64>, width: f64, page: &mut Element) {
     let centre = at + Vector2::new(badge::RADIUS + 1.0, badge::RADIUS + 6.0);
-    page.append(badge(&centre, index + 1, step.primitive));
+    let telling = story.telling(index);
+    page.append(badge(&centre, telling.last, step.primitive));
     let travel = Travel::of(story, step);
     let object = travel.object.and_then(|object| story.problem.objects.get(object));
+    let numbers = if telling.first == telling.last { String::new() } else { format!(" ({})", telling.label()) };
     let heading = match object {
-        Some(object) => format!("{} {}", step.primitive, object.name),
-        None => step.primitive.to_string(),
+        Some(object) => format!("{} {}{numbers}", step.primitive, object.name),
+        None => format!("{}{numbers}", step.primitive),
     };
     let line = at + Vector2::new(2.0 * badge::RADIUS + 7.0, 18.0);
     page.append(ink::bold(ink::text(&line, 11.5, palette::TEXT, Anchor::Start, &heading)));

@@ -34,9 +34,9 @@ struct Stop {
 fn stops(story: &Story) -> Vec<Stop> {
     let mut stops: Vec<Stop> = Vec::new();
     let counted = |step: &StoryStep| moves_base(step) || strength(step.primitive) > PALE;
-    for (index, step) in story.steps.iter().enumerate().filter(|(_, step)| counted(step)) {
+    for (index, step) in story.drawn_steps().filter(|(_, step)| counted(step)) {
         let base = story.end_of(index).robot.base;
-        let entry = (index + 1, step.primitive);
+        let entry = (story.telling(index).last, step.primitive);
         let same = |stop: &&mut Stop| stop.base.iter().zip(base).all(|(a, b)| (a - b).abs() < SAME_BASE);
         match stops.iter_mut().find(same) {
             Some(stop) => stop.numbers.push(entry),
@@ -54,11 +54,11 @@ pub(super) fn draw_robots(story: &Story, view: &View, group: &mut Element) {
     Figure::new(story, &story.start).draw(view, Detail::Whole, palette::ROBOT, strength, group);
     // What only moves the robot lies below and is paler, what changes the object's state is on top.
     for strength in [PALE, 0.4, 0.75] {
-        for (index, step) in story.steps.iter().enumerate() {
+        for (index, step) in story.drawn_steps() {
             if self::strength(step.primitive) != strength {
                 continue;
             }
-            let mut drawn = ink::group(&format!("step {}: {}", index + 1, step.primitive));
+            let mut drawn = ink::group(&format!("step {}: {}", story.telling(index).label(), step.primitive));
             let detail = if moves_base(step) { Detail::Whole } else { Detail::Arm };
             let colour = palette::of(step.primitive);
             Figure::new(story, story.end_of(index)).draw(view, detail, colour, strength, &mut drawn);
@@ -94,15 +94,17 @@ pub(super) fn draw_numbers(story: &Story, view: &View, badges: &mut Badges, grou
 
 /// Draws the way of every object, coloured by primitive, with its outline at the end of each step that moved it.
 pub(super) fn draw_ways(story: &Story, view: &View, group: &mut Element) {
-    for (number, step) in (1..).zip(&story.steps) {
+    for (index, step) in story.steps.iter().enumerate() {
         let colour = palette::of(step.primitive);
-        let mut drawn = ink::group(&format!("step {number}: {}", step.primitive));
+        let telling = story.telling(index);
+        let mut drawn = ink::group(&format!("step {}: {}", telling.label(), step.primitive));
         for object in 0..story.start.objects.len() {
             let way = way(step, object, view);
             if way.len() < 2 {
                 continue;
             }
-            if let Some(pose) = step.snapshots.last().and_then(|snapshot| snapshot.objects.get(object)) {
+            let end = step.snapshots.last().filter(|_| telling.is_drawn);
+            if let Some(pose) = end.and_then(|snapshot| snapshot.objects.get(object)) {
                 let ink = Ink::filled(colour).opacity(0.10).line(colour, 1.0);
                 drawn.append(ink::polygon(&object_outline(story, object, pose, view), &ink));
             }

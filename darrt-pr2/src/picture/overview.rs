@@ -87,7 +87,7 @@ fn draw_close_up(story: &Story, room: &Room, view: &View, group: &mut Element) {
     draw_objects(story, &story.start, view, &start_ink(), group);
     room.name_clutter(view, group);
     journey::draw_ways(story, view, group);
-    for (index, step) in story.steps.iter().enumerate() {
+    for (index, step) in story.drawn_steps() {
         let hand = |snapshot, strength, group: &mut Element| {
             Figure::new(story, snapshot).draw(view, Detail::Hand, palette::of(step.primitive), strength, group);
         };
@@ -101,10 +101,14 @@ fn draw_close_up(story: &Story, room: &Room, view: &View, group: &mut Element) {
     journey::draw_pushes(story, view, group);
     let mut badges = Badges::new(view.size());
     for (index, [from, to]) in journey::pushes(story, view) {
+        let telling = story.telling(index);
+        if !telling.is_drawn {
+            continue;
+        }
         // Beside the arrow, not on it.
         let along = (to - from).try_normalize(1e-9).unwrap_or_default();
         let aside = nalgebra::Vector2::new(-along.y, along.x) * (2.0 * journey::arrow_width(view));
-        badges.draw(&(nalgebra::center(&from, &to) + aside), &[(index + 1, PrimitiveName::Push)], group);
+        badges.draw(&(nalgebra::center(&from, &to) + aside), &[(telling.last, PrimitiveName::Push)], group);
     }
 }
 

@@ -11,8 +11,10 @@ use crate::plan_file::{PlanFile, Waypoint};
 use crate::postures::ArmPosture;
 use crate::problem_file::geometry::Geometry;
 use crate::problem_file::{ArmSide, PrimitiveName, ProblemFile};
+use crate::words::counted;
 
 use super::PictureError;
+use super::abridged::Telling;
 
 /// Gap between the fingers where nothing says otherwise (m).
 const OPEN_GAP: f64 = 0.08;
@@ -59,6 +61,8 @@ pub struct Story {
     pub start: Snapshot,
     /// The steps of the plan; none for a problem.
     pub steps: Vec<StoryStep>,
+    /// What each step stands for in an abridged story; empty when each stands for itself.
+    pub(super) tellings: Vec<Telling>,
 }
 
 impl Story {
@@ -80,7 +84,8 @@ impl Story {
             objects: geometry.objects.iter().map(|object| object.world_from_object).collect(),
         };
         let side = side_of(problem.robot.arm);
-        Ok(Self { problem: problem.clone(), geometry, model, side, note: String::new(), start, steps: Vec::new() })
+        let (steps, tellings) = (Vec::new(), Vec::new());
+        Ok(Self { problem: problem.clone(), geometry, model, side, note: String::new(), start, steps, tellings })
     }
 
     /// The story of a plan.
@@ -136,14 +141,13 @@ impl Story {
 /// How the plan was found, in one line.
 fn note(plan: &PlanFile) -> String {
     let facts = &plan.planner;
-    let words = |count: u64, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
     format!(
         "Seed {}: {} found after {} and {}, tree of {}.",
         plan.seed,
-        words(plan.steps.len() as u64, "step"),
-        words(facts.iterations, "iteration"),
-        words(facts.restarts, "restart"),
-        words(facts.nodes, "node"),
+        counted(plan.steps.len() as u64, "step"),
+        counted(facts.iterations, "iteration"),
+        counted(facts.restarts, "restart"),
+        counted(facts.nodes, "node"),
     )
 }
 

@@ -112,3 +112,35 @@ fn the_format_follows_the_ending() {
         assert!(format(bad).unwrap_err().to_string().contains(".svg or .html"), "{bad}");
     }
 }
+
+/// The plan of [`story`] again and again, each push and carry in several pieces.
+fn long_story(rounds: usize) -> Story {
+    let mut long = story();
+    let round = long.steps.clone();
+    long.steps.clear();
+    for step in round.iter().cycle().take(rounds * round.len()) {
+        long.steps.extend(std::iter::repeat_n(step.clone(), 3));
+    }
+    long
+}
+
+#[test]
+fn long_plans_are_drawn_in_part_and_say_so() {
+    let badges = |image: &str| image.matches("font-weight=\"bold\"").count();
+    let long = long_story(10);
+    assert_eq!(long.steps.len(), 210);
+    let image = draw(&long, Format::Svg, Extent::Whole);
+    // 70 steps when like ones are joined, 30 of them drawn.
+    assert!(image.contains("Steps of one kind in a row are drawn as one. 120 of the 210 steps are not drawn"));
+    assert!(image.contains("<title>step 208\u{2013}210: Place</title>") && image.contains(">210</text>"));
+    assert!(image.contains("(208\u{2013}210)"));
+    // Its number in three views, the close-up and its frame, and the heading of the frame.
+    assert!(badges(&image) < 6 * 30 + 10, "{}", badges(&image));
+    // The ways are whole: a title for each of the joined steps.
+    for first in (1..=208).step_by(3) {
+        assert!(image.contains(&format!("<title>step {first}\u{2013}{}", first + 2)), "{first}");
+    }
+    let joined = draw(&long_story(3), Format::Svg, Extent::Whole);
+    assert!(joined.contains("drawn as one.") && !joined.contains("are not drawn"));
+    assert!(!draw(&story(), Format::Svg, Extent::Whole).contains("drawn as one"));
+}

@@ -81,13 +81,15 @@ impl Travel {
     }
 }
 
-/// `0.52 m 14°`, without what is nothing.
+/// `0.52 m 14°`, without what is nothing; what moves hardly at all is `<1 mm`.
 pub fn amount(way: f64, turn: f64) -> String {
     let degrees = turn.to_degrees();
     match (way >= 0.0005, degrees >= 0.5) {
         (true, true) => format!("{} {degrees:.0}\u{b0}", metres(way)),
         (true, false) => metres(way),
         (false, true) => format!("{degrees:.0}\u{b0}"),
+        (false, false) if way > STILL => "<1 mm".to_owned(),
+        (false, false) if turn > STILL => "<1\u{b0}".to_owned(),
         (false, false) => String::new(),
     }
 }
@@ -135,5 +137,6 @@ mod tests {
         assert_eq!(travel.in_words(), "base 0.70 m 16\u{b0}, object 0.50 m");
         assert_eq!(travel.plus(&travel).in_words(), "base 1.40 m 32\u{b0}, object 1.00 m");
         assert_eq!(Travel::default().in_words(), "");
+        assert_eq!([amount(2e-5, 1e-7), amount(0.0, 1e-3), amount(1e-9, 1e-9)], ["<1 mm", "<1\u{b0}", ""]);
     }
 }

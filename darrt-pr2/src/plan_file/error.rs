@@ -14,6 +14,14 @@ pub enum PlanFileError {
     /// The file or text is none that is given to the parser.
     #[error(transparent)]
     Text(#[from] TextFileError),
+    /// The file is something else, and says so.
+    #[error("{file}: {what}")]
+    OtherKind {
+        /// The file.
+        file: String,
+        /// What it is, and which command takes it.
+        what: String,
+    },
     /// The file cannot be written; what was there before is untouched.
     #[error("{file}: cannot be written: {source}")]
     Write {

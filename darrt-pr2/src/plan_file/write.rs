@@ -8,6 +8,7 @@ use serde_json::Serializer;
 
 use super::layout::Lines;
 use super::{PlanFile, PlanFileError, Pose, Waypoint};
+use crate::problem_file::paths::folder_of;
 use crate::text_file;
 
 impl PlanFile {
@@ -31,12 +32,21 @@ impl PlanFile {
     /// Writes the plan to `path`. The text first goes to a new file in the same folder, which then takes the place of
     /// `path`: whoever looks sees the old file, the whole new one, or none.
     ///
+    /// Paths of meshes and of a robot description are written relative to the folder of `path`, so that the plan can be
+    /// read from anywhere, and moved together with them; those that share no folder with it are written absolute.
+    ///
     /// # Errors
     /// [`PlanFileError::Write`] with the path when the folder does not exist or cannot be written, and as
     /// [`PlanFile::to_json`].
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), PlanFileError> {
         let path = path.as_ref();
-        let text = self.to_json()?;
+        let text = if self.problem.names_files() {
+            let mut moved = self.clone();
+            moved.problem.make_paths_start_at(folder_of(path));
+            moved.to_json()?
+        } else {
+            self.to_json()?
+        };
         text_file::replace(path, &text)
             .map_err(|source| PlanFileError::Write { file: path.display().to_string(), source })
     }

@@ -3,7 +3,7 @@
 use darrt_geom::GeomError;
 use thiserror::Error;
 
-use super::suggest::{hint, listed};
+use super::suggest::{hint, listed, shown};
 use crate::text_file::TextFileError;
 
 /// A problem file that cannot be used, with the place and the reason.
@@ -13,6 +13,14 @@ pub enum ProblemFileError {
     /// The file or text is none that is given to the parser.
     #[error(transparent)]
     Text(#[from] TextFileError),
+    /// The file is something else, and says so.
+    #[error("{file}: {what}")]
+    OtherKind {
+        /// The file.
+        file: String,
+        /// What it is, and which command takes it.
+        what: String,
+    },
     /// The text is not TOML, or a key or value is not part of the format.
     #[error("{file}:{line}:{column}: {}{message}{}", at(key.as_deref()), hint(nearest.as_deref()))]
     Syntax {
@@ -68,8 +76,14 @@ pub enum Flaw {
         /// The bound in words.
         bound: String,
     },
+    /// A name holds characters that do something to a terminal.
+    #[error("is \"{}\", a name must not have control characters", shown(name))]
+    Unprintable {
+        /// The name.
+        name: String,
+    },
     /// A count or length is outside its bound.
-    #[error("has {found} entries, must have {bound}")]
+    #[error("has {found} {}, must have {bound}", if *found == 1 { "entry" } else { "entries" })]
     WrongLength {
         /// How many there are.
         found: usize,
@@ -131,6 +145,62 @@ pub enum Flaw {
         /// The surface.
         surface: String,
     },
+    /// A surface is above or inside its body.
+    #[error(
+        "puts the surface `{surface}` at the height {height}, but the top of its body `{body}` is at {}; they may differ \
+         by {tolerance} m",
+        metres(*top)
+    )]
+    NotOnTop {
+        /// The surface.
+        surface: String,
+        /// Its height (m).
+        height: f64,
+        /// Its body.
+        body: String,
+        /// The height of the body (m).
+        top: f64,
+        /// The largest difference (m).
+        tolerance: f64,
+    },
+    /// A corner of a surface is not on its body.
+    #[error(
+        "is the corner [{}, {}] of the surface `{surface}`, {} m beside its body `{body}`; at most {tolerance} m is on it",
+        corner[0], corner[1], metres(*outside)
+    )]
+    BesideBody {
+        /// The surface.
+        surface: String,
+        /// World x, y.
+        corner: [f64; 2],
+        /// How far from the body (m).
+        outside: f64,
+        /// The body.
+        body: String,
+        /// How far is near enough (m).
+        tolerance: f64,
+    },
+    /// A mesh has no upper face where a surface is.
+    #[error(
+        "puts the surface `{surface}` at the height {height}, but at [{}, {}] its body `{body}` has {}; a face that looks \
+         up must be within {tolerance} m",
+        metres(at[0]), metres(at[1]),
+        nearest.map_or_else(|| "nothing".to_owned(), |z| format!("its nearest face at {}", metres(z)))
+    )]
+    NoFace {
+        /// The surface.
+        surface: String,
+        /// Its height (m).
+        height: f64,
+        /// Its body, a mesh.
+        body: String,
+        /// World x, y.
+        at: [f64; 2],
+        /// Height of the nearest face there, which may be an underside (m).
+        nearest: Option<f64>,
+        /// The largest difference (m).
+        tolerance: f64,
+    },
     /// A shape, mesh or polygon that cannot be built.
     #[error("cannot be built: {0}")]
     Geometry(#[from] GeomError),
@@ -145,7 +215,7 @@ fn at(key: Option<&str>) -> String {
 
 /// Metres, to a tenth of a millimetre but never to 0.
 fn metres(length: f64) -> f64 {
-    if length < 1e-4 { length } else { (length * 1e4).round() / 1e4 }
+    if length.abs() < 1e-4 { length } else { (length * 1e4).round() / 1e4 }
 }
 
 /// A flaw and the path of the key that has it.

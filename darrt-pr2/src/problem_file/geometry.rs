@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::error::{Flaw, Located};
 use super::layout::Layout;
+use super::upper_face;
 use super::{GoalTarget, Object, ObjectGoal, ProblemFile, ProblemFileError, ShapeSpec};
 
 /// The name of the floor, a half space below z = 0 that is part of every scene.
@@ -79,7 +80,7 @@ impl ProblemFile {
     }
 
     /// Names a flaw that was found in this problem after reading.
-    fn located(&self, (key, flaw): Located) -> ProblemFileError {
+    pub(super) fn located(&self, (key, flaw): Located) -> ProblemFileError {
         ProblemFileError::Invalid { file: format!("problem `{}`", self.name), key, flaw: Box::new(flaw) }
     }
 
@@ -108,6 +109,12 @@ impl ProblemFile {
         let whole = |error: GeomError| Flaw::from(error).at("obstacle");
         let floor = Shape::half_space(Vector3::z_axis()).and_then(|shape| Body::single(FLOOR, shape)).map_err(whole)?;
         bodies.push(FixedBody { body: floor, world_from_body: Isometry3::identity() });
+        for (index, (surface, placed)) in self.surfaces.iter().zip(&layout.surfaces).enumerate() {
+            let carrier = self.obstacles.iter().zip(&bodies).find(|(o, _)| Some(&o.name) == surface.body.as_ref());
+            if let (Some(polygon), Some((_, carrier))) = (&surface.polygon, carrier) {
+                upper_face::check(&placed.support, polygon, carrier, &format!("surface[{index}]"))?;
+            }
+        }
         let surfaces = layout.surfaces.iter().map(|surface| surface.support.clone()).collect();
         Scene::new(bodies, surfaces).map_err(whole)
     }

@@ -1,13 +1,13 @@
 //! Reading a problem file: guards first, then TOML, then defaults, then validation.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::error::ProblemFileError;
 use super::nesting::check_nesting;
-use super::shape::ShapeSpec;
 use super::suggest::{nearest_expected, shown};
 use super::toml_path::path_at;
 use super::{ProblemFile, builtin};
+use crate::file_kind::FileKind;
 use crate::text_file;
 pub use crate::text_file::MAX_NESTING;
 
@@ -25,12 +25,14 @@ impl ProblemFile {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ProblemFileError> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let text = text_file::read(path, MAX_BYTES)?;
+        // Plans may be larger than problems, so even what is too large is looked at.
+        let text = text_file::read(path, MAX_BYTES)
+            .map_err(|error| other_kind(FileKind::of_file(path), &name).unwrap_or_else(|| error.into()))?;
         let mut problem = parse(&text, &name)?;
+        problem.validate(&name)?;
         if let Some(folder) = path.parent() {
             problem.resolve_paths(folder);
         }
-        problem.validate(&name)?;
         Ok(problem)
     }
 
@@ -69,28 +71,20 @@ impl ProblemFile {
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(self)
     }
+}
 
-    /// Makes relative paths start at `folder`.
-    fn resolve_paths(&mut self, folder: &Path) {
-        let files = self
-            .obstacles
-            .iter_mut()
-            .map(|obstacle| &mut obstacle.shape)
-            .chain(self.objects.iter_mut().map(|object| &mut object.shape))
-            .filter_map(|shape| match shape {
-                ShapeSpec::Mesh { file, .. } => Some(file),
-                _ => None,
-            })
-            .chain(self.robot.urdf.as_mut());
-        for file in files {
-            let resolved: PathBuf = folder.join(&*file);
-            *file = resolved;
-        }
-    }
+/// The error for a file of another kind.
+fn other_kind(kind: Option<FileKind>, file: &str) -> Option<ProblemFileError> {
+    let what = kind?.instead_of_problem(file)?;
+    Some(ProblemFileError::OtherKind { file: file.to_owned(), what })
 }
 
 /// Guards, TOML and defaults; no validation.
 fn parse(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileError> {
+    parse_toml(text, source_name).map_err(|error| other_kind(FileKind::of_text(text), source_name).unwrap_or(error))
+}
+
+fn parse_toml(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileError> {
     text_file::check(text, source_name, MAX_BYTES, check_nesting)?;
     let mut problem: ProblemFile = toml::from_str(text).map_err(|error| {
         let place = error.span().unwrap_or(0..text.len());
@@ -124,6 +118,7 @@ impl ProblemFile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem_file::ShapeSpec;
     use crate::text_file::TextFileError as T;
     use darrt_geom::FileError as F;
 

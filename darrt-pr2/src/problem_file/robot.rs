@@ -45,7 +45,8 @@ pub struct Robot {
     /// A built-in model; default `pr2` unless `urdf` is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<RobotModel>,
-    /// A robot description file instead of a built-in model, relative to the problem file.
+    /// A robot description file instead of a built-in model, relative to the folder of the problem or plan file that names
+    /// it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub urdf: Option<PathBuf>,
     /// The manipulating arm.

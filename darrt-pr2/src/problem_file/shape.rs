@@ -52,7 +52,7 @@ pub enum ShapeSpec {
     },
     /// A triangle mesh from an STL or OBJ file.
     Mesh {
-        /// The file, relative to the problem file.
+        /// The file, relative to the folder of the problem or plan file that names it.
         file: PathBuf,
         /// Factor on the coordinates of the file, > 0; 0.001 for a file in millimetres.
         #[serde(default = "one")]

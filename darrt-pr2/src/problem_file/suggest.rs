@@ -1,5 +1,7 @@
 //! The nearest valid name for one that is not.
 
+use crate::words::on_one_line;
+
 /// Longer names are compared and shown only up to this many characters.
 const LONGEST: usize = 80;
 
@@ -28,13 +30,13 @@ fn likeness(a: &str, b: &str) -> f64 {
     if contained { edits.max(0.6) } else { edits }
 }
 
-/// `text`, cut to a length that fits a message.
+/// `text`, cut to a length that fits a message and without anything that a terminal acts on.
 pub(crate) fn shown(text: &str) -> String {
     if text.chars().count() <= LONGEST {
-        text.to_owned()
+        on_one_line(text).into_owned()
     } else {
         let start: String = text.chars().take(LONGEST).collect();
-        format!("{start}...")
+        format!("{}...", on_one_line(&start))
     }
 }
 

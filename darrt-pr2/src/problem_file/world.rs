@@ -80,7 +80,7 @@ pub struct Obstacle {
 
 /// `[[surface]]`: a horizontal support surface.
 ///
-/// Either `top_of = "obstacle"`, the top face of a level box, or `polygon` and `z`.
+/// Either `top_of = "obstacle"`, the top face of a level box, or `polygon`, `z` and `body`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Surface {
@@ -95,7 +95,7 @@ pub struct Surface {
     /// Height of the polygon above the floor in metres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
-    /// The obstacle that objects on a polygon surface touch; with `top_of` it is that obstacle.
+    /// The obstacle on whose upper face a polygon lies, and which objects there touch; with `top_of` it is that obstacle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
 }

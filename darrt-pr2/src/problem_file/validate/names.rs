@@ -7,6 +7,7 @@ use crate::postures::ArmPosture;
 use crate::problem_file::ProblemFile;
 use crate::problem_file::error::{Flaw, Located};
 use crate::problem_file::suggest::{nearest, shown};
+use crate::words::acts;
 
 /// Longest accepted name in bytes.
 const LONGEST_NAME: usize = 100;
@@ -16,7 +17,7 @@ const FLOOR: &str = crate::problem_file::geometry::FLOOR;
 
 /// Bodies (obstacles, objects, the floor) have different names, and so have surfaces.
 pub(super) fn check_unique(problem: &ProblemFile) -> Result<(), Located> {
-    length("name", problem.name.len(), 1, LONGEST_NAME)?;
+    usable("name", &problem.name)?;
     let mut bodies = BTreeMap::from([(FLOOR, FLOOR.to_owned())]);
     for (index, obstacle) in problem.obstacles.iter().enumerate() {
         claim(&mut bodies, &obstacle.name, format!("obstacle[{index}]"))?;
@@ -33,7 +34,7 @@ pub(super) fn check_unique(problem: &ProblemFile) -> Result<(), Located> {
 
 fn claim<'a>(taken: &mut BTreeMap<&'a str, String>, name: &'a str, owner: String) -> Result<(), Located> {
     let key = format!("{owner}.name");
-    length(&key, name.len(), 1, LONGEST_NAME)?;
+    usable(&key, name)?;
     match taken.insert(name, owner) {
         None => Ok(()),
         Some(taken_by) => {
@@ -41,6 +42,15 @@ fn claim<'a>(taken: &mut BTreeMap<&'a str, String>, name: &'a str, owner: String
             Err(Flaw::Duplicate { name, taken_by }.at(key))
         }
     }
+}
+
+/// A name is not empty, not long, and can be printed as it is.
+fn usable(key: &str, name: &str) -> Result<(), Located> {
+    length(key, name.len(), 1, LONGEST_NAME)?;
+    if name.chars().any(acts) {
+        return Err(Flaw::Unprintable { name: name.to_owned() }.at(key));
+    }
+    Ok(())
 }
 
 /// There is a support surface called `value`.

@@ -167,9 +167,10 @@ fn things_stand_on_their_surfaces() {
     let stacked = "shape = { box = { size = [1, 1, 1] } }\nstanding_on = \"table\"\nat = [0, 0]";
     let below = "shape = { box = { size = [0.8, 0.8, 0.7] } }\nat = [0.0, 0.0, 0.35]";
     refused(below, stacked, &["stands on itself"]);
-    let bow_tie = "polygon = [[0,0],[1,1],[1,0],[0,2]]\nz = 1";
+    let bow_tie = "polygon = [[0,0],[1,1],[1,0],[0,2]]\nz = 1\nbody = \"table\"";
     refused("top_of = \"table\"", bow_tie, &["`surface[0]`", "touch or cross"]);
     refused("top_of = \"table\"", "polygon = [[0,0],[1,1],[1,0]]", &["`surface[0]`", "height `z`"]);
+    refused("top_of = \"table\"", "polygon = [[0,0],[1,1],[1,0]]\nz = 1", &["`surface[0]`", "needs `body`"]);
 }
 
 #[test]

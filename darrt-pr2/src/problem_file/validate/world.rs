@@ -106,6 +106,10 @@ fn check_surface(problem: &ProblemFile, plane: &Surface, key: &str) -> Result<()
             let text = "has a polygon and needs its height `z`";
             return Err(Flaw::Inconsistent(text.to_owned()).at(key));
         }
+        if plane.body.is_none() {
+            let text = "has a polygon and needs `body`, the obstacle on whose upper face it lies";
+            return Err(Flaw::Inconsistent(text.to_owned()).at(key));
+        }
     }
     plane.body.as_ref().map_or(Ok(()), |name| obstacle(problem, &format!("{key}.body"), name))
 }

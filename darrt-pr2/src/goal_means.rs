@@ -1,0 +1,178 @@
+//! Has the problem the means that its goal needs? Asked before the search, so that a goal for which a primitive or the
+//! grasps are missing is an error with a name instead of a search to the end of the budget.
+//!
+//! Only what is certain counts: an object rests until it is picked, a push leaves it on its surface, and only Place lets
+//! go of it.
+
+use crate::planning_error::PlanningError;
+use crate::problem_file::{GoalState, GoalTarget, Object, ObjectGoal, PrimitiveName, ProblemFile};
+
+/// Checks that for every object some goal may hold at the start, or that it can be moved as that goal needs.
+///
+/// # Errors
+/// [`PlanningError::GoalWithoutMeans`] with the object, the goals and what is missing for each.
+pub fn check_means(problem: &ProblemFile) -> Result<(), PlanningError> {
+    let mut in_the_hand = None;
+    for (name, alternatives) in problem.goal.by_object() {
+        let Some(object) = problem.object(name) else { continue };
+        let means = Means::new(problem, object);
+        let lacks: Vec<_> = alternatives.iter().map(|goal| means.lack(problem, goal)).collect();
+        let refuse = |why: String| Err(PlanningError::GoalWithoutMeans { object: name.to_owned(), why });
+        if lacks.iter().all(Option::is_some) {
+            return refuse(lacks.into_iter().flatten().collect::<Vec<_>>().join("; and "));
+        }
+        let must_be_held = alternatives.iter().all(|goal| goal.state() == GoalState::Held);
+        if must_be_held && let Some(first) = in_the_hand.replace(name) {
+            return refuse(format!("it must be in the hand at the end, and so must `{first}`; there is one hand"));
+        }
+    }
+    Ok(())
+}
+
+/// What can be done with one object, each with the reason why not.
+struct Means<'a> {
+    object: &'a Object,
+    pick: Result<(), &'static str>,
+    place: Result<(), &'static str>,
+    push: Result<(), &'static str>,
+}
+
+impl<'a> Means<'a> {
+    fn new(problem: &ProblemFile, object: &'a Object) -> Self {
+        let allowed = |name, lack| if problem.allows(name) { Ok(()) } else { Err(lack) };
+        let fit = |is_fit: bool, lack| if is_fit { Ok(()) } else { Err(lack) };
+        let pick = allowed(PrimitiveName::Pick, "`Pick` is not among the primitives")
+            .and(fit(!object.grasps.is_empty(), "it has no `grasps` for Pick"));
+        let place = pick.and(allowed(PrimitiveName::Place, "`Place` is not among the primitives"));
+        let push = allowed(PrimitiveName::Push, "`Push` is not among the primitives")
+            .and(fit(object.pushable(), "it is not `pushable`"));
+        Self { object, pick, place, push }
+    }
+
+    /// Why `goal` can certainly not be reached; `None` if it may be.
+    fn lack(&self, problem: &ProblemFile, goal: &ObjectGoal) -> Option<String> {
+        let index = problem.goal.objects.iter().position(|other| std::ptr::eq(other, goal)).unwrap_or(0);
+        let key = format!("`goal.object[{index}]`");
+        if goal.state() == GoalState::Held {
+            return self.pick.err().map(|lack| format!("{key} wants it in the hand, but {lack}"));
+        }
+        let by_hand = if goal.state() == GoalState::Released { self.place } else { self.pick };
+        let lack = by_hand.err()?;
+        if self.may_hold_at_start(goal) {
+            return None;
+        }
+        let start = &self.object.on;
+        match goal.on.as_deref().filter(|on| on != start) {
+            Some(on) => Some(format!("{key} wants it on `{on}`, it starts on `{start}`, and {lack}")),
+            None => self.push.err().map(|push| format!("{key} wants it to move, but {lack}, and {push}")),
+        }
+    }
+
+    /// Whether the object may already be where the goal wants it; by x and y alone, so that "no" is certain.
+    fn may_hold_at_start(&self, goal: &ObjectGoal) -> bool {
+        let [x, y] = self.object.at;
+        let beside = match goal.target() {
+            Some(GoalTarget::On { at: [u, v], .. } | GoalTarget::At { position: [u, v, _] }) => [x - u, y - v],
+            Some(GoalTarget::Within { region, .. }) => {
+                let ([u, v], [w, z]) = (region.min, region.max);
+                [x - x.max(u).min(w), y - y.max(v).min(z)]
+            }
+            None => return true,
+        };
+        beside[0].hypot(beside[1]) <= goal.tolerance_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem_file::{builtin, builtin_names};
+
+    /// What is said about an edited Plate1, whose plate goes from the central table to the side table.
+    fn said(edit: impl Fn(&mut ProblemFile)) -> Option<String> {
+        let mut problem = builtin("plate1").unwrap();
+        edit(&mut problem);
+        check_means(&problem).err().map(|error| error.to_string())
+    }
+
+    fn without(problem: &mut ProblemFile, name: PrimitiveName) {
+        problem.primitives.retain(|other| *other != name);
+    }
+
+    #[test]
+    fn the_built_in_problems_have_what_they_need() {
+        for name in builtin_names() {
+            check_means(&builtin(name).unwrap()).unwrap();
+        }
+    }
+
+    #[test]
+    fn goals_on_another_surface_need_pick_place_and_grasps() {
+        assert_eq!(
+            said(|p| without(p, PrimitiveName::Pick)).unwrap(),
+            "the goal of `plate` cannot be reached: `goal.object[0]` wants it on `side table`, it starts on `central \
+             table`, and `Pick` is not among the primitives"
+        );
+        assert!(said(|p| without(p, PrimitiveName::Place)).unwrap().contains("`Place` is not among the primitives"));
+        assert!(said(|p| p.objects[0].grasps.clear()).unwrap().contains("it has no `grasps` for Pick"));
+        // In the hand over the other table is good enough.
+        let any = |p: &mut ProblemFile| {
+            without(p, PrimitiveName::Place);
+            p.goal.objects[0].state = Some(GoalState::Any);
+        };
+        assert_eq!(said(any), None);
+    }
+
+    #[test]
+    fn goals_on_the_same_surface_need_a_push_or_pick_and_place() {
+        let here = |p: &mut ProblemFile| {
+            p.goal.objects[0].on = Some("central table".to_owned());
+            p.goal.objects[0].at = Some([-0.2, -0.2]);
+            p.objects[0].grasps.clear();
+        };
+        assert_eq!(said(here), None, "it can be pushed");
+        let still = said(|p| {
+            here(p);
+            p.objects[0].pushable = Some(false);
+        });
+        assert!(
+            still.unwrap().ends_with("wants it to move, but it has no `grasps` for Pick, and it is not `pushable`")
+        );
+        let there_already = said(|p| {
+            here(p);
+            without(p, PrimitiveName::Push);
+            p.goal.objects[0].at = Some(p.objects[0].at);
+        });
+        assert_eq!(there_already, None);
+    }
+
+    #[test]
+    fn one_alternative_is_enough_and_all_that_fail_are_told() {
+        let both = |p: &mut ProblemFile| {
+            let mut held = p.goal.objects[0].clone();
+            (held.on, held.at, held.position, held.state) = (None, None, Some([-1.0, 0.0, 0.9]), None);
+            p.goal.objects.push(held);
+            without(p, PrimitiveName::Place);
+        };
+        assert_eq!(said(both), None);
+        let neither = said(|p| {
+            both(p);
+            without(p, PrimitiveName::Pick);
+        });
+        let neither = neither.unwrap();
+        assert!(neither.contains("`goal.object[0]`") && neither.contains("`goal.object[1]` wants it in the hand"));
+    }
+
+    #[test]
+    fn one_hand_holds_one_object() {
+        let two = said(|p| {
+            let mut second = p.objects[0].clone();
+            second.name = "bowl".to_owned();
+            p.objects.push(second);
+            let mut held = p.goal.objects[0].clone();
+            held.state = Some(GoalState::Held);
+            p.goal.objects = vec![held.clone(), ObjectGoal { object: "bowl".to_owned(), ..held }];
+        });
+        assert!(two.unwrap().ends_with("in the hand at the end, and so must `plate`; there is one hand"));
+    }
+}
