@@ -1,6 +1,5 @@
 //! The PR2 in the scene of Plate3.
 
-use darrt_core::budget::Cancel;
 use darrt_core::domain::Domain as _;
 use darrt_core::search::{Darrt, Strategy};
 use darrt_core::space::ComponentSpace as _;
@@ -86,7 +85,7 @@ impl Default for Room {
 pub fn prepared() -> (Prepared, Strategy<World>) {
     let file = plate3();
     let strategy = strategy(&file.sampling, file.sampling.sampler, file.sampling.distance).unwrap();
-    (prepare(&file, &Cancel::new()).unwrap(), strategy)
+    (prepare(&file).unwrap(), strategy)
 }
 
 /// States of a tree that has grown for `iterations`, at most `count`, spread over the tree.

@@ -144,14 +144,8 @@ fn leap<D: Domain>(
             if interrupt.stop().is_some() {
                 return None;
             }
-            let sampled;
-            let target = match ahead.get(count - 1) {
-                Some(placement) => &placement.target,
-                None => {
-                    sampled = problem.goal().sample(m, rng)?;
-                    &sampled
-                }
-            };
+            let goal = if count > ahead.len() { Some(problem.goal().sample(m, rng)?) } else { None };
+            let Some(target) = goal.as_ref().or(ahead.get(count - 1).map(|p| &p.target)) else { break };
             let mut extension = extender.extend(here, target, rng);
             let is_goal = |reached: &Reached<D>| problem.goal().is_satisfied(m, &reached.state);
             if let Some(last) = extension.reached.iter().position(is_goal) {

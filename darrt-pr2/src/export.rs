@@ -44,11 +44,15 @@ impl Exporter {
     /// The plan as a file.
     pub fn export(&self, m: &World, plan: &Plan<World>, seed: u64, planner: PlannerFacts) -> PlanFile {
         let mut before = plan.start().clone();
-        let mut steps = Vec::with_capacity(plan.steps().len());
+        let mut steps: Vec<Step> = Vec::with_capacity(plan.steps().len());
+        let mut was_steady = false;
         for step in plan.steps() {
-            let (written, end) = self.step(m, step, &before);
-            steps.push(written);
-            before = end;
+            let (written, end, is_steady) = self.step(m, step, &before);
+            match steps.last_mut().filter(|last| was_steady && is_steady && goes_on(last, &written)) {
+                Some(last) => last.waypoints.extend(written.waypoints.into_iter().skip(1)),
+                None => steps.push(written),
+            }
+            (before, was_steady) = (end, is_steady);
         }
         PlanFile {
             format: PlanFormat::DarrtPlan,
@@ -61,8 +65,8 @@ impl Exporter {
         }
     }
 
-    /// One step and the state it ends in.
-    fn step(&self, m: &World, step: &PlanStep<World>, before: &WorldState) -> (Step, WorldState) {
+    /// One step, the state it ends in, and whether the hand neither opens nor closes in it.
+    fn step(&self, m: &World, step: &PlanStep<World>, before: &WorldState) -> (Step, WorldState, bool) {
         let instance = &step.instance;
         let inside = instance.at(m, f64::MIN_POSITIVE, before);
         let mut waypoints = vec![self.waypoint(m, before, before.mode.gap_m())];
@@ -93,7 +97,8 @@ impl Exporter {
             allowed_contacts: contacts(m, instance, &inside.mode, primitive),
             waypoints,
         };
-        (written, end)
+        let is_steady = [before.mode.gap_m(), end.mode.gap_m()] == [gap_m; 2];
+        (written, end, is_steady)
     }
 
     fn waypoint(&self, m: &World, state: &WorldState, gap_m: f64) -> Waypoint {
@@ -103,6 +108,20 @@ impl Exporter {
         let objects: BTreeMap<_, _> = poses.map(|(o, pose)| (o.body.name.to_string(), Pose::from(*pose))).collect();
         Waypoint { base: state.robot.base, joints, objects }
     }
+}
+
+/// Is the second step more of what the first does? Transits and transfers are free to turn at any waypoint.
+fn goes_on(step: &Step, next: &Step) -> bool {
+    let may_turn = matches!(
+        step.primitive,
+        PrimitiveName::ArmTransit
+            | PrimitiveName::ArmRigidTransfer
+            | PrimitiveName::BaseTransit
+            | PrimitiveName::BaseRigidTransfer
+    );
+    may_turn
+        && (step.primitive, &step.object, &step.holds, &step.allowed_contacts)
+            == (next.primitive, &next.object, &next.holds, &next.allowed_contacts)
 }
 
 /// The parameters of the waypoints: all knots up to `until`, and more between them so that none is far from the next.

@@ -137,12 +137,20 @@ pub struct Prepared {
     accepted: Accepted,
 }
 
-/// Builds and checks everything about a problem before the search. `cancel` ends the verifier's work.
+/// Builds and checks everything about a problem before the search.
 ///
 /// # Errors
 /// [`PlanningError`] with what cannot be used: a start outside limits or in collision, a blocked goal, a missing
 /// primitive, a robot or shape that cannot be built.
-pub fn prepare(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, PlanningError> {
+pub fn prepare(file: &ProblemFile) -> Result<Prepared, PlanningError> {
+    prepare_unless(file, &Cancel::new())
+}
+
+/// [`prepare`]; the verifier gives up as soon as `cancel` is called.
+///
+/// # Errors
+/// As [`prepare`].
+pub fn prepare_unless(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, PlanningError> {
     check_companions(file)?;
     crate::goal_means::check_means(file)?;
     let Built { world, start, goal, scene } = world::build(file)?;
@@ -168,7 +176,7 @@ pub fn prepare(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, Planning
 /// # Errors
 /// [`PlanningError`] when the problem cannot be planned at all; see [`prepare`].
 pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer) -> Result<PlanResult, PlanningError> {
-    let prepared = prepare(&request.problem, cancel)?;
+    let prepared = prepare_unless(&request.problem, cancel)?;
     let (sampler, distance) = chosen(request);
     let strategy = strategy(&request.problem.sampling, sampler, distance)?;
     let budget = &request.problem.budget;

@@ -1,7 +1,6 @@
 //! Problems that read: refused by the planner with a reason, or a few iterations go without panic and balance.
 #![no_main]
 
-use darrt_core::budget::Cancel;
 use darrt_core::laws::check_accounts;
 use darrt_core::search::Darrt;
 use darrt_fuzz::text::text;
@@ -18,7 +17,7 @@ fuzz_target!(|data: &[u8]| {
     if file.robot.urdf.is_some() || shapes.any(|shape| matches!(shape, ShapeSpec::Mesh { .. })) {
         return;
     }
-    let Ok(prepared) = prepare(&file, &Cancel::new()) else { return };
+    let Ok(prepared) = prepare(&file) else { return };
     let Ok(strategy) = strategy(&file.sampling, file.sampling.sampler, file.sampling.distance) else { return };
     let mut darrt = Darrt::new(&prepared.problem, &strategy, data.len() as u64, 0, 10_000);
     for _ in 0..ITERATIONS {

@@ -20,6 +20,7 @@ mod problem_errors;
 mod refusals;
 #[cfg(test)]
 mod shortened;
+#[cfg(test)]
 mod solved;
 #[cfg(test)]
 mod stops;

@@ -111,3 +111,85 @@ impl Approach {
         Speeds([pushed.and_then(way).unwrap_or(0.0), base].into_iter().chain(joints).collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan_file::PlanFile;
+    use crate::planning::{PlanRequest, plan};
+    use crate::problem_file::builtin;
+    use crate::verify::motion::State;
+    use crate::verify::solid::exact;
+    use crate::verify::world::World;
+    use darrt_core::budget::Cancel;
+    use darrt_core::observe::Silent;
+    use rand::{RngExt as _, SeedableRng as _};
+
+    /// A robot somewhere, and the same one a little farther on.
+    fn bowl() -> PlanFile {
+        let request = PlanRequest::new(builtin("bowl").unwrap(), 1);
+        plan(&request, &Cancel::new(), &mut Silent).unwrap().plan.unwrap()
+    }
+
+    #[test]
+    fn no_two_solids_come_nearer_than_the_speeds_say() {
+        let file = bowl();
+        let robot = Robot::new(&file.problem).unwrap();
+        let world = World::new(&file.problem).unwrap();
+        let approach = Approach::new(&robot).unwrap();
+        let extents = robot.extents(0.0);
+        let start = State::read(&file.start, &robot, &world).unwrap();
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(4);
+        let mut draw = |from: &State, size: f64| {
+            let mut state = from.clone();
+            for (i, value) in state.joints.iter_mut().enumerate() {
+                if robot.roles[i] != Role::Parked {
+                    *value += rng.random_range(-size..size);
+                }
+            }
+            state.base.iter_mut().for_each(|value| *value += rng.random_range(-size..size));
+            state
+        };
+        let mut poses = (Vec::new(), Vec::new());
+        let mut tight = 0;
+        for round in 0..40 {
+            let from = draw(&start, 0.8);
+            let mut to = draw(&from, 0.05);
+            // With the base at rest the arm alone counts.
+            if round % 2 == 0 {
+                to.base = from.base;
+            }
+            let speeds = approach.speeds(&Segment::new(&from, &to, &robot), &extents, None);
+            robot.link_poses(&from.base, &from.joints, &mut poses.0);
+            robot.link_poses(&to.base, &to.joints, &mut poses.1);
+            for (i, a) in robot.solids.iter().enumerate().step_by(3) {
+                for b in robot.solids.iter().skip(i + 1).step_by(2) {
+                    let distance = |links: &[nalgebra::Isometry3<f64>]| {
+                        let (pose_a, pose_b) = (links[a.link] * a.link_from_solid, links[b.link] * b.link_from_solid);
+                        exact(&a.solid, &pose_a, &b.solid, &pose_b).unwrap().distance
+                    };
+                    let bound = speeds.of(approach.of_link(a.link).between(approach.of_link(b.link)));
+                    let change = (distance(&poses.0) - distance(&poses.1)).abs();
+                    let names = (a.solid.name(), b.solid.name());
+                    assert!(change <= bound + 1e-6, "{names:?}: {change} m nearer, bound {bound} m");
+                    tight += u32::from(change > 0.3 * bound && bound > 0.01);
+                }
+            }
+        }
+        assert!(tight > 20, "the bounds say little: {tight}");
+    }
+
+    #[test]
+    fn only_what_lies_between_counts() {
+        let robot = Robot::new(&builtin("bowl").unwrap()).unwrap();
+        let approach = Approach::new(&robot).unwrap();
+        let of = |name: &str| approach.of_link(robot.tree.link_index(name).unwrap());
+        let count = |a: &str, b: &str| of(a).between(of(b)).0.count_ones();
+        assert_eq!(count("base_link", "torso_lift_link"), 0);
+        assert_eq!(count("base_link", "r_shoulder_pan_link"), 1);
+        assert_eq!(count("r_shoulder_pan_link", "r_forearm_link"), 4);
+        assert_eq!(count("r_gripper_palm_link", "r_gripper_l_finger_link"), 1);
+        assert_eq!(of("base_link").between(Movers::NONE).0.count_ones(), 1);
+        assert_eq!(of("r_wrist_roll_link").between(Movers::NONE).0.count_ones(), 8);
+    }
+}

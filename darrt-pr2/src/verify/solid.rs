@@ -22,6 +22,8 @@ pub(super) struct Solid {
 pub(super) struct Answer {
     /// Metres, 0 when they touch or overlap.
     pub(super) distance: f64,
+    /// Never more than the true distance.
+    pub(super) lower: f64,
     pub(super) intersects: bool,
     /// A point in both or between them, world.
     pub(super) place: Point3<f64>,
@@ -106,8 +108,13 @@ pub(super) fn exact(
     ];
     let found = oracle::nearest(&bodies, &|_, _| false)?;
     // Two bodies are one pair, so there is always an answer.
-    let touching = Answer { distance: 0.0, intersects: true, place: world_from_a * a.centre };
-    Ok(found.map_or(touching, |f| Answer { distance: f.distance, intersects: f.intersects, place: f.place }))
+    let touching = Answer { distance: 0.0, lower: 0.0, intersects: true, place: world_from_a * a.centre };
+    Ok(found.map_or(touching, |f| Answer {
+        distance: f.distance,
+        lower: f.lower,
+        intersects: f.intersects,
+        place: f.place,
+    }))
 }
 
 #[cfg(test)]

@@ -323,7 +323,7 @@ impl Stage {
         if is_counted && answer.distance < nearest {
             self.smallest = Some(SmallestClearance { distance_m: answer.distance, bodies: names(), step, time });
         }
-        Ok(answer.distance)
+        Ok(answer.lower.max(bound))
     }
 
     /// The solid and the pose of an object.
