@@ -13,6 +13,7 @@ mod pair;
 mod rod;
 mod scan;
 mod solid;
+mod watch;
 
 use crate::allowed::AllowedContacts;
 use crate::batch::{BoxBatch, PlacedBox};
@@ -24,6 +25,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 pub use model::CollisionModelBuilder;
+pub use watch::Travel;
 
 /// Two bodies that are too near.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,8 +52,7 @@ pub struct Query<'a> {
     pub allowed: &'a AllowedContacts,
     /// Pairs nearer than this are hits, in metres. Pairs nearer than 1e-7 m touch, which always is a hit.
     pub clearance: f64,
-    /// No need to know bounds above this: metres for [`CollisionModel::lower_bound`], units of the parameter for
-    /// [`CollisionModel::free_step`]. Small values make queries fast.
+    /// No need to know bounds above this, in metres. Small values make queries fast.
     pub cap: f64,
 }
 
@@ -114,6 +115,7 @@ pub struct Scratch {
     poses: Poses,
     distances: Vec<f64>,
     candidates: Vec<scan::Candidate>,
+    watch: watch::Watch,
 }
 
 impl CollisionModel {
@@ -124,7 +126,12 @@ impl CollisionModel {
 
     /// Fresh memory for queries. Until a moving body gets its first pose, every query returns a [`Hit`] that names it.
     pub fn scratch(&self) -> Scratch {
-        Scratch { poses: self.initial.clone(), distances: Vec::new(), candidates: Vec::new() }
+        Scratch {
+            poses: self.initial.clone(),
+            distances: Vec::new(),
+            candidates: Vec::new(),
+            watch: watch::Watch::default(),
+        }
     }
 
     /// Number of bodies.
@@ -231,35 +238,7 @@ impl CollisionModel {
     pub fn lower_bound(&self, scratch: &mut Scratch, query: &Query<'_>) -> Result<f64, Hit> {
         // Bounds between the cap and the clearance decide about hits, so the scan must see them.
         let start = query.cap.max(query.clearance);
-        let found = self.scan(scratch, query, start, &scan::Metres)?;
-        Ok(found.min(query.cap).max(0.0))
-    }
-
-    /// How far a motion may go from the current poses before any tested pair could come nearer than the clearance, at most
-    /// `cap`: the least of `(distance - clearance) / (reach(a) + reach(b))`, rounded down.
-    ///
-    /// `reach[i]` bounds how many metres any point of body `i` travels per unit of the motion's parameter; bodies beyond the
-    /// end of the slice have reach 0. Slow bodies near obstacles do not shorten the step of fast ones in the open, which
-    /// [`Self::clearance`] cannot offer.
-    ///
-    /// Two bodies in `chain` belong to one kinematic chain: they approach each other no faster than the faster of them
-    /// travels, because only the joints between them count. Any other two may each do their worst.
-    ///
-    /// # Errors
-    /// As [`Self::clearance`].
-    ///
-    /// # Source
-    /// Conservative advancement: B. Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996, section 2.3;
-    /// per-pair bounds as in F. Schwarzer, M. Saha, J.-C. Latombe, "Adaptive dynamic collision checking", 2005.
-    pub fn free_step(
-        &self,
-        scratch: &mut Scratch,
-        query: &Query<'_>,
-        reach: &[f64],
-        chain: &BodySet,
-    ) -> Result<f64, Hit> {
-        let measure = scan::Steps { reach, chain, clearance: query.clearance.max(0.0) };
-        let found = self.scan(scratch, query, query.cap, &measure)?;
+        let found = self.scan(scratch, query, start)?;
         Ok(found.min(query.cap).max(0.0))
     }
 

@@ -255,8 +255,11 @@ mod tests {
     use nalgebra::{Translation3, UnitQuaternion};
     use rand::{RngExt as _, SeedableRng as _};
 
+    type Corners = Vec<Point3<f64>>;
+    type Edges = Vec<(Point3<f64>, Point3<f64>)>;
+
     /// Corners and edges of a box in the world.
-    fn skeleton(half: &Vector3<f64>, pose: &Isometry3<f64>) -> (Vec<Point3<f64>>, Vec<(Point3<f64>, Point3<f64>)>) {
+    fn skeleton(half: &Vector3<f64>, pose: &Isometry3<f64>) -> (Corners, Edges) {
         let sign = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
         let corner = |i: usize| {
             pose * Point3::from(half.component_mul(&Vector3::new(sign(i & 1), sign(i >> 1 & 1), sign(i >> 2 & 1))))

@@ -10,7 +10,7 @@ use darrt_core::state::ObjectId;
 use darrt_core::validity::{Blame, BlockKind};
 use darrt_geom::allowed::{AllowedContacts, ContactReason};
 use darrt_geom::body_set::{BodyIndex, BodySet};
-use darrt_geom::collide::{CollisionModel, Hit, Query, Scratch};
+use darrt_geom::collide::{CollisionModel, Hit, Query, Scratch, Travel};
 use darrt_geom::error::GeomError;
 use darrt_geom::scene::FixedBody;
 use darrt_geom::shape::Shape;
@@ -395,17 +395,22 @@ impl Surroundings {
         self.model.lower_bound(scratch, &Query { moved, against, allowed, clearance: clearance_m, cap: cap_m })
     }
 
-    /// How far the motion's parameter may grow, at most `cap`, before anything in `moved` and `against` can come nearer
-    /// than the clearance, when every body travels as `worker.reach` says. The bodies in `chain` hang together.
-    pub(crate) fn free_step(
+    /// Begins to watch a leg of a motion, from one parameter to another, on which every body travels as `worker.reach`
+    /// says. The bodies in `chain` hang together.
+    pub(crate) fn watch(
         &self,
         worker: &mut Worker,
         (moved, against, chain): (&BodySet, &BodySet, &BodySet),
-        cap: f64,
-    ) -> Result<f64, Hit> {
+        (from, to): (f64, f64),
+    ) {
         let Worker { scratch, allowed, reach, .. } = worker;
-        let query = Query { moved, against, allowed, clearance: self.strictness.clearance_m, cap };
-        self.model.free_step(scratch, &query, reach, chain)
+        let query = Query { moved, against, allowed, clearance: self.strictness.clearance_m, cap: 0.0 };
+        self.model.watch(scratch, &query, &Travel { reach, chain, from, to });
+    }
+
+    /// The parameter up to which nothing that is watched can come nearer than the clearance, at most `now + cap`.
+    pub(crate) fn free_until(&self, worker: &mut Worker, now: f64, cap: f64) -> Result<f64, Hit> {
+        self.model.free_until(&mut worker.scratch, now, cap)
     }
 
     /// The bodies of the objects, by id.

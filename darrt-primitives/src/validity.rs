@@ -277,17 +277,15 @@ impl SceneValidity {
         let (cap, least) = (strictness.cap_m / leg.fastest, unseen_m / leg.fastest);
         // Nothing touches up to here, and the rules were last found kept there.
         let (mut free, mut kept) = (t, t);
+        around.watch(worker, (&leg.moved, &leg.against, &leg.chain), (t, leg.end));
         loop {
-            let pairs = (&leg.moved, &leg.against, &leg.chain);
-            let ahead =
-                around.free_step(worker, pairs, cap.min(leg.end - t)).map_err(|hit| (free, around.blame(&hit)))?;
+            let until = around.free_until(worker, t, cap).map_err(|hit| (free, around.blame(&hit)))?;
             self.check_moved_objects(m, here, &leg.moved).map_err(|blame| (kept, blame))?;
             kept = t;
             if t >= leg.end {
                 return Ok(());
             }
-            let ahead = ahead.min(self.to_edge(m, here, leg));
-            free = (t + ahead).min(leg.end);
+            free = until.min(t + self.to_edge(m, here, leg));
             t = if free + least >= leg.end { leg.end } else { free + least };
             instance.motion.at_into(m, t, next);
             // At the end of a motion the mode may change, which is judged apart.

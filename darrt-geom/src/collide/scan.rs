@@ -3,8 +3,7 @@
 use super::pair::{self, Bound};
 use super::solid::{Kind, Plane, Solid};
 use super::{CollisionModel, Hit, Poses, Query, Scratch};
-use crate::batch::PlacedBox;
-use crate::body_set::{BodyIndex, BodySet};
+use crate::body_set::BodyIndex;
 use crate::narrow::{self, Gap, Posed};
 use crate::place;
 use nalgebra::{Isometry3, Point3};
@@ -14,7 +13,7 @@ use nalgebra::{Isometry3, Point3};
 const REFINE_BELOW: f64 = 0.01;
 
 /// Solids nearer than this, in metres, touch: rounding cannot tell such a gap from none.
-const TOUCHING: f64 = 1e-7;
+pub(super) const TOUCHING: f64 = 1e-7;
 
 /// A pair of solids that could lower the minimum.
 #[derive(Debug, Clone, Copy)]
@@ -25,101 +24,50 @@ pub(super) struct Candidate {
     solids: (usize, usize),
 }
 
-/// What is minimised over the pairs: a value that grows with the distance.
-pub(super) trait Measure {
-    /// Distances from here on cannot lower `best`.
-    fn enough(&self, best: f64, a: BodyIndex, b: BodyIndex) -> f64;
-    /// The value of a pair at this distance.
-    fn value(&self, distance: f64, a: BodyIndex, b: BodyIndex) -> f64;
-}
-
-/// The distance itself.
-pub(super) struct Metres;
-
-impl Measure for Metres {
-    #[inline]
-    fn enough(&self, best: f64, _: BodyIndex, _: BodyIndex) -> f64 {
-        best
-    }
-    #[inline]
-    fn value(&self, distance: f64, _: BodyIndex, _: BodyIndex) -> f64 {
-        distance
-    }
-}
-
-/// How much of a motion's parameter the distance is worth.
-pub(super) struct Steps<'a> {
-    pub(super) reach: &'a [f64],
-    pub(super) chain: &'a BodySet,
-    pub(super) clearance: f64,
-}
-
-impl Steps<'_> {
-    #[inline]
-    fn speed(&self, a: BodyIndex, b: BodyIndex) -> f64 {
-        let of = |body: BodyIndex| self.reach.get(body.get()).copied().unwrap_or(0.0);
-        if self.chain.contains(a) && self.chain.contains(b) { of(a).max(of(b)) } else { of(a) + of(b) }
-    }
-}
-
-impl Measure for Steps<'_> {
-    #[inline]
-    fn enough(&self, best: f64, a: BodyIndex, b: BodyIndex) -> f64 {
-        self.clearance + best * self.speed(a, b)
-    }
-    #[inline]
-    fn value(&self, distance: f64, a: BodyIndex, b: BodyIndex) -> f64 {
-        let speed = self.speed(a, b);
-        // A pair that does not approach never blocks.
-        if speed > 0.0 { (distance - self.clearance) / speed } else { f64::INFINITY }
-    }
-}
-
 /// Pairs nearer than this are hits.
 #[inline]
-fn too_near(query: &Query<'_>) -> f64 {
+pub(super) fn too_near(query: &Query<'_>) -> f64 {
     query.clearance.max(TOUCHING)
 }
 
-/// [`Measure::enough`], but never so little that a hit could be passed over.
+/// Distances from here on cannot lower `best`; never so little that a hit could be passed over.
 #[inline]
-fn enough(measure: &impl Measure, query: &Query<'_>, best: f64, a: BodyIndex, b: BodyIndex) -> f64 {
-    measure.enough(best, a, b).max(too_near(query))
+fn enough(query: &Query<'_>, best: f64) -> f64 {
+    best.max(too_near(query))
 }
 
 impl CollisionModel {
-    /// The least value over the tested pairs, at most `start`.
-    pub(super) fn scan(
-        &self,
-        scratch: &mut Scratch,
-        query: &Query<'_>,
-        start: f64,
-        measure: &impl Measure,
-    ) -> Result<f64, Hit> {
+    /// A lower bound of the least distance over the tested pairs, at most `start`.
+    pub(super) fn scan(&self, scratch: &mut Scratch, query: &Query<'_>, start: f64) -> Result<f64, Hit> {
         self.ensure_fits(scratch);
-        let Scratch { poses, distances, candidates } = scratch;
-        if let Some(body) = poses.unsound.iter().next() {
-            let nowhere = Hit { first: body, second: body, place: Point3::origin(), separation: f64::NEG_INFINITY };
-            return Err(nowhere);
+        let Scratch { poses, distances, candidates, .. } = scratch;
+        if let Some(hit) = Self::unsound(poses) {
+            return Err(hit);
         }
         candidates.clear();
-        self.against_fixed(poses, query, start, measure, distances, candidates);
-        self.against_moving(poses, query, start, measure, candidates);
-        let mut best = self.against_planes(poses, query, start, measure)?;
+        self.against_fixed(poses, query, start, distances, candidates);
+        self.against_moving(poses, query, start, candidates);
+        let mut best = self.against_planes(poses, query, start)?;
         // The most promising candidate first: it rules out most of the others.
         let least = (0..candidates.len()).min_by(|&i, &j| candidates[i].bound.total_cmp(&candidates[j].bound));
         if let Some(least) = least {
             candidates.swap(0, least);
         }
         for candidate in &*candidates {
-            best = self.resolve(poses, query, candidate, best, measure)?;
+            best = self.resolve(poses, query, candidate, best)?;
         }
         Ok(best)
     }
 
+    /// A body without a sound pose, as a hit.
+    pub(super) fn unsound(poses: &Poses) -> Option<Hit> {
+        let body = poses.unsound.iter().next()?;
+        Some(Hit { first: body, second: body, place: Point3::origin(), separation: f64::NEG_INFINITY })
+    }
+
     /// Whether a tested pair is asked for.
     #[inline]
-    fn asked(query: &Query<'_>, a: BodyIndex, b: BodyIndex) -> bool {
+    pub(super) fn asked(query: &Query<'_>, a: BodyIndex, b: BodyIndex) -> bool {
         let paired = query.moved.contains(a) && query.against.contains(b)
             || query.moved.contains(b) && query.against.contains(a);
         paired && !query.allowed.contains(a, b)
@@ -131,7 +79,6 @@ impl CollisionModel {
         poses: &Poses,
         query: &Query<'_>,
         start: f64,
-        measure: &impl Measure,
         distances: &mut Vec<f64>,
         candidates: &mut Vec<Candidate>,
     ) {
@@ -140,7 +87,7 @@ impl CollisionModel {
             self.fixed_boxes.distances(&poses.centres[body.get()], registered.radius, distances);
             for (&other, &distance) in self.fixed_solids.iter().zip(&*distances) {
                 let partner = self.solids[other].body;
-                let enough = enough(measure, query, start, body, partner);
+                let enough = enough(query, start);
                 if distance >= enough || !registered.partners.contains(partner) || !Self::asked(query, body, partner) {
                     continue;
                 }
@@ -159,17 +106,10 @@ impl CollisionModel {
     }
 
     /// Collects the candidates between moving bodies.
-    fn against_moving(
-        &self,
-        poses: &Poses,
-        query: &Query<'_>,
-        start: f64,
-        measure: &impl Measure,
-        candidates: &mut Vec<Candidate>,
-    ) {
+    fn against_moving(&self, poses: &Poses, query: &Query<'_>, start: f64, candidates: &mut Vec<Candidate>) {
         for &(a, b) in &self.moving_pairs {
             let (of_a, of_b) = (&self.bodies[a.get()], &self.bodies[b.get()]);
-            let enough = enough(measure, query, start, a, b);
+            let enough = enough(query, start);
             let reach = enough + of_a.radius + of_b.radius;
             // OPTIMIZATION: squares compare without a root.
             let apart = (poses.centres[b.get()] - poses.centres[a.get()]).norm_squared();
@@ -189,7 +129,7 @@ impl CollisionModel {
     }
 
     /// Settles the pairs with half spaces.
-    fn against_planes(&self, poses: &Poses, query: &Query<'_>, start: f64, measure: &impl Measure) -> Result<f64, Hit> {
+    fn against_planes(&self, poses: &Poses, query: &Query<'_>, start: f64) -> Result<f64, Hit> {
         let mut best = start;
         for plane in &self.planes {
             for body in query.moved.intersection(&self.moving).iter() {
@@ -198,64 +138,74 @@ impl CollisionModel {
                     continue;
                 }
                 for i in registered.solids.clone() {
-                    let (solid, placed) = (&self.solids[i], &poses.placed[i]);
-                    let enough = enough(measure, query, best, body, plane.body);
-                    let mut height = plane.height(solid, placed);
-                    if height < enough && matches!(solid.kind, Kind::Wrapped) {
-                        let local = placed.axes.tr_mul(&plane.normal);
-                        let origin = poses.world_from_shape(solid).translation.vector;
-                        height = plane.normal.dot(&origin) - plane.offset - solid.shape.support_extent(&-local);
-                    }
+                    let height = self.height_over(poses, i, plane, enough(query, best));
                     if height < too_near(query) {
-                        return Err(hit_plane(poses, solid, plane, height));
+                        return Err(hit_plane(poses, &self.solids[i], plane, height));
                     }
-                    best = best.min(measure.value(height, body, plane.body));
+                    best = best.min(height);
                 }
             }
         }
         Ok(best)
     }
 
+    /// Lower bound of the height of a solid over a half space; of those that only have a box it is tightened when that is
+    /// not `enough`.
+    pub(super) fn height_over(&self, poses: &Poses, i: usize, plane: &Plane, enough: f64) -> f64 {
+        let (solid, placed) = (&self.solids[i], &poses.placed[i]);
+        let height = plane.height(solid, placed);
+        if height >= enough || !matches!(solid.kind, Kind::Wrapped) {
+            return height;
+        }
+        let local = placed.axes.tr_mul(&plane.normal);
+        let origin = poses.world_from_shape(solid).translation.vector;
+        plane.normal.dot(&origin) - plane.offset - solid.shape.support_extent(&-local)
+    }
+
     /// Settles a candidate: the new minimum, or a hit.
-    fn resolve(
-        &self,
-        poses: &Poses,
-        query: &Query<'_>,
-        candidate: &Candidate,
-        best: f64,
-        measure: &impl Measure,
-    ) -> Result<f64, Hit> {
-        let (i, j) = candidate.solids;
-        let (a, b) = (&self.solids[i], &self.solids[j]);
-        let (placed_a, placed_b): (&PlacedBox, &PlacedBox) = (&poses.placed[i], &poses.placed[j]);
-        let enough = enough(measure, query, best, a.body, b.body);
+    fn resolve(&self, poses: &Poses, query: &Query<'_>, candidate: &Candidate, best: f64) -> Result<f64, Hit> {
+        let enough = enough(query, best);
         if candidate.bound >= enough {
             return Ok(best);
         }
-        let bound = pair::bound(a, placed_a, b, placed_b, enough);
-        let mut value = bound.value().max(candidate.bound);
+        Ok(best.min(self.settle(poses, candidate.solids, candidate.bound, enough, too_near(query))?))
+    }
+
+    /// A lower bound of the distance of two solids that is at least `bound`; tightened until it is `enough` or cannot be
+    /// tightened any more. A hit if they are nearer than `near`.
+    pub(super) fn settle(
+        &self,
+        poses: &Poses,
+        (i, j): (usize, usize),
+        bound: f64,
+        enough: f64,
+        near: f64,
+    ) -> Result<f64, Hit> {
+        let (a, b) = (&self.solids[i], &self.solids[j]);
+        let closed_form = pair::bound(a, &poses.placed[i], b, &poses.placed[j], enough);
+        let mut value = closed_form.value().max(bound);
         if value >= enough {
-            return Ok(best);
+            return Ok(value);
         }
-        let doubtful = match bound {
+        let doubtful = match closed_form {
             Bound::Exact(_) => false,
-            Bound::Signed(value) => value > 0.0 && value < too_near(query),
-            Bound::Loose(value) => value < too_near(query).max(REFINE_BELOW),
+            Bound::Signed(value) => value > 0.0 && value < near,
+            Bound::Loose(value) => value < near.max(REFINE_BELOW),
         };
         if doubtful {
             match narrow::gap(&posed(poses, a), &posed(poses, b)) {
                 Gap::Closed => return Err(hit(poses, a, b, value.min(0.0))),
                 Gap::Open { distance, lower, .. } => {
-                    if distance < too_near(query) {
+                    if distance < near {
                         return Err(hit(poses, a, b, distance));
                     }
                     value = value.max(lower);
                 }
             }
-        } else if value < too_near(query) {
+        } else if value < near {
             return Err(hit(poses, a, b, value));
         }
-        Ok(best.min(measure.value(value, a.body, b.body)))
+        Ok(value)
     }
 }
 
@@ -272,7 +222,7 @@ fn hit(poses: &Poses, a: &Solid, b: &Solid, separation: f64) -> Hit {
 }
 
 /// A solid that is too near to a half space.
-fn hit_plane(poses: &Poses, solid: &Solid, plane: &Plane, separation: f64) -> Hit {
+pub(super) fn hit_plane(poses: &Poses, solid: &Solid, plane: &Plane, separation: f64) -> Hit {
     let pose: Isometry3<f64> = poses.world_from_shape(solid);
     let place = place::shared(&solid.shape, &pose, &plane.shape, &plane.world_from_shape);
     Hit { first: solid.body, second: plane.body, place, separation }
