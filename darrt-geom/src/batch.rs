@@ -1,14 +1,14 @@
 //! Distance of one ball to many boxes at once: the first and cheapest look of the collision checker.
 //!
 //! The boxes lie in blocks of [`LANES`], each coordinate of a block side by side, so that the compiler turns the loops over
-//! lanes into vector instructions. A run-time dispatched kernel can replace [`BoxBatch::distances`] without its callers
-//! noticing: it is a pure function of its arguments, and multiplications and additions are kept apart (no fused ones) so that
-//! every processor gives the same bits.
+//! lanes into vector instructions: those that the processor has, found out when the program runs. Multiplications and
+//! additions are kept apart (no fused ones), so that every processor gives the same bits.
 
 use nalgebra::{Matrix3, Vector3};
+use pulp::{Arch, Simd, WithSimd};
 
 /// Boxes per block.
-pub(crate) const LANES: usize = 4;
+pub(crate) const LANES: usize = 8;
 /// Where the unused lanes of the last block lie: farther than any cap, near enough for finite squares.
 const NOWHERE: f64 = 1e100;
 
@@ -53,13 +53,14 @@ impl Block {
         }
     }
 
-    /// The kernel.
-    #[inline]
-    fn distances(&self, centre: &Vector3<f64>, radius: f64) -> [f64; LANES] {
+    /// The kernel: squared distances of a point to the boxes, 0 inside.
+    #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
+    #[inline(always)]
+    fn squared(&self, point: &Vector3<f64>) -> [f64; LANES] {
         let mut from = [[0.0; LANES]; 3];
         for (i, row) in from.iter_mut().enumerate() {
             for (lane, x) in row.iter_mut().enumerate() {
-                *x = centre[i] - self.centre[i][lane];
+                *x = point[i] - self.centre[i][lane];
             }
         }
         let mut squared = [0.0; LANES];
@@ -73,15 +74,55 @@ impl Block {
                 *sum += over * over;
             }
         }
-        squared.map(|s| s.sqrt() - radius)
+        squared
     }
+}
+
+/// The search of [`BoxBatch::near`], compiled for every kind of processor.
+struct Near<'a> {
+    blocks: &'a [Block],
+    point: &'a Vector3<f64>,
+    reach: f64,
+    out: &'a mut Vec<NearBox>,
+}
+
+impl WithSimd for Near<'_> {
+    type Output = ();
+
+    #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let limit = self.reach * self.reach;
+        for (number, block) in self.blocks.iter().enumerate() {
+            let squared = block.squared(self.point);
+            // Written so that a NaN is near.
+            let nearest = squared.iter().fold(f64::INFINITY, |least, s| if *s >= least { least } else { *s });
+            if nearest >= limit {
+                continue;
+            }
+            for (lane, squared) in squared.into_iter().enumerate() {
+                let is_far = squared >= limit;
+                if !is_far {
+                    self.out.push(NearBox { index: number * LANES + lane, distance: squared.sqrt() });
+                }
+            }
+        }
+    }
+}
+
+/// A box near a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NearBox {
+    /// Its place in the batch.
+    pub(crate) index: usize,
+    /// From the point to the box, metres; 0 inside.
+    pub(crate) distance: f64,
 }
 
 /// Boxes that stay where they are.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BoxBatch {
     blocks: Vec<Block>,
-    count: usize,
 }
 
 impl BoxBatch {
@@ -101,16 +142,13 @@ impl BoxBatch {
                 block
             })
             .collect();
-        Self { blocks, count: boxes.len() }
+        Self { blocks }
     }
 
-    /// Writes into `out`, for each box in order, what [`PlacedBox::ball_distance`] says (metres).
-    pub(crate) fn distances(&self, centre: &Vector3<f64>, radius: f64, out: &mut Vec<f64>) {
+    /// Writes into `out` the boxes nearer to a point than `reach` metres (not negative), in order.
+    pub(crate) fn near(&self, point: &Vector3<f64>, reach: f64, out: &mut Vec<NearBox>) {
         out.clear();
-        for block in &self.blocks {
-            out.extend_from_slice(&block.distances(centre, radius));
-        }
-        out.truncate(self.count);
+        Arch::new().dispatch(Near { blocks: &self.blocks, point, reach, out });
     }
 }
 
@@ -136,14 +174,17 @@ mod tests {
     proptest! {
         #[test]
         fn the_batch_says_what_each_box_says(
-            boxes in prop::collection::vec(placed(), 0..11), at in prop::array::uniform3(-3.0_f64..3.0), radius in 0.0_f64..1.0,
+            boxes in prop::collection::vec(placed(), 0..19), at in prop::array::uniform3(-3.0_f64..3.0), reach in 0.0_f64..3.0,
         ) {
             let at = Vector3::from(at);
-            let mut out = vec![7.0];
-            BoxBatch::new(&boxes).distances(&at, radius, &mut out);
-            prop_assert_eq!(out.len(), boxes.len());
-            for (placed, found) in boxes.iter().zip(out) {
-                prop_assert!((placed.ball_distance(&at, radius) - found).abs() < 1e-12);
+            let mut out = vec![NearBox { index: 7, distance: 7.0 }];
+            BoxBatch::new(&boxes).near(&at, reach, &mut out);
+            let near = boxes.iter().map(|placed| placed.ball_distance(&at, 0.0)).enumerate().filter(|(_, d)| *d < reach);
+            let near: Vec<_> = near.collect();
+            prop_assert_eq!(out.len(), near.len());
+            for ((index, expected), found) in near.into_iter().zip(out) {
+                prop_assert_eq!(index, found.index);
+                prop_assert!((expected - found.distance).abs() < 1e-12);
             }
         }
 

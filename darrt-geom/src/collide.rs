@@ -16,7 +16,7 @@ mod solid;
 mod watch;
 
 use crate::allowed::AllowedContacts;
-use crate::batch::{BoxBatch, PlacedBox};
+use crate::batch::{BoxBatch, NearBox, PlacedBox};
 use crate::body_set::{BodyIndex, BodySet};
 use crate::narrow;
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -113,7 +113,7 @@ struct Poses {
 #[derive(Debug, Clone)]
 pub struct Scratch {
     poses: Poses,
-    distances: Vec<f64>,
+    near: Vec<NearBox>,
     candidates: Vec<scan::Candidate>,
     watch: watch::Watch,
 }
@@ -128,7 +128,7 @@ impl CollisionModel {
     pub fn scratch(&self) -> Scratch {
         Scratch {
             poses: self.initial.clone(),
-            distances: Vec::new(),
+            near: Vec::new(),
             candidates: Vec::new(),
             watch: watch::Watch::default(),
         }

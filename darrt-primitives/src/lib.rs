@@ -25,6 +25,7 @@ pub mod goal;
 pub mod grasp;
 pub mod kinematics;
 pub mod laws;
+mod leg;
 pub mod manipulator;
 pub mod mode;
 pub mod object_space;

@@ -14,13 +14,13 @@ use std::sync::Arc;
 use darrt_core::domain::Domain;
 use darrt_core::motion::Instance;
 use darrt_core::space::ComponentSpace;
-use darrt_core::space::so2::turn;
 use darrt_core::state::ObjectId;
 use darrt_core::validity::{Blame, BlockKind, FreePrefix, Validity};
-use darrt_geom::body_set::{BodyIndex, BodySet};
+use darrt_geom::body_set::BodySet;
 use darrt_geom::collide::CollisionModel;
 use nalgebra::{Isometry3, Point2};
 
+use crate::leg::Leg;
 use crate::manipulator::Manipulator;
 use crate::mode::Contacts;
 use crate::surroundings::{KEPT_BETWEEN, Surroundings, Worker};
@@ -30,20 +30,6 @@ use crate::tabletop::{Tabletop, TabletopState};
 #[derive(Debug, Clone)]
 pub struct SceneValidity {
     surroundings: Arc<Surroundings>,
-}
-
-/// One leg of a motion: everything moves in a straight line of its space.
-struct Leg {
-    /// Parameter at its end.
-    end: f64,
-    /// What moves.
-    moved: BodySet,
-    /// What it may meet: all but what moves rigidly with it.
-    against: BodySet,
-    /// The links, and what is held.
-    chain: BodySet,
-    /// Bound on the metres by which any pair approaches per unit of the parameter.
-    fastest: f64,
 }
 
 impl SceneValidity {
@@ -140,75 +126,6 @@ impl SceneValidity {
         Ok(())
     }
 
-    /// What moves from `a`, where every body stands, to `b`, and how fast each body travels: written to `worker.reach`,
-    /// metres per unit of the parameter, of which the leg takes `span`.
-    fn leg<M: Manipulator>(
-        &self,
-        m: &Tabletop<M>,
-        a: &TabletopState<M>,
-        b: &TabletopState<M>,
-        (end, span): (f64, f64),
-        worker: &mut Worker,
-    ) -> Leg {
-        let around = &*self.surroundings;
-        let mut moved = around.moved(a, b);
-        let mut chain = *around.all_links();
-        let drives = a.robot.arm == b.robot.arm && a.robot.base != b.robot.base;
-        let mut held_travel = 0.0;
-        if a.robot == b.robot {
-            worker.link_travel.fill(0.0);
-        } else {
-            let reach_m = m.held_reach_m(&a.mode);
-            held_travel = m.manipulator().link_travel_m(&a.robot, &b.robot, reach_m, &mut worker.link_travel);
-        }
-        worker.reach.fill(0.0);
-        let mut fastest = 0.0_f64;
-        for ((id, travel), pose) in around.links().iter().zip(&worker.link_travel).zip(&worker.poses) {
-            let travel = if drives { travel.min(self.drive_travel(*id, pose, a, b)) } else { *travel };
-            if let Some(slot) = worker.reach.get_mut(id.get()) {
-                *slot = travel / span;
-                fastest = fastest.max(*slot);
-            }
-        }
-        let fastest_link = fastest;
-        for (i, ((id, from), to)) in around.objects().iter().zip(&a.objects).zip(&b.objects).enumerate() {
-            let Some(slot) = worker.reach.get_mut(id.get()) else { continue };
-            if a.mode.held().is_some_and(|held| held.object.index() == i) {
-                chain.insert(*id);
-                let travel = if drives { held_travel.min(self.drive_travel(*id, from, a, b)) } else { held_travel };
-                *slot = travel / span;
-                fastest = fastest.max(*slot);
-            } else {
-                *slot = (to.translation.vector - from.translation.vector).norm() / span;
-                fastest = fastest.max(fastest_link + *slot);
-            }
-        }
-        // A held object that happens to end where it began moves in between.
-        if let Some(id) = a.mode.held().and_then(|held| around.objects().get(held.object.index()))
-            && a.robot != b.robot
-        {
-            moved.insert(*id);
-        }
-        // A robot that drives with its arm at rest moves as one body, with what it holds.
-        let against = if drives { BodySet::ALL.difference(&moved) } else { BodySet::ALL };
-        Leg { end, moved, against, chain, fastest }
-    }
-
-    /// Bound on the travel of a body, now at `pose`, that turns about the axis of the base and drives with it.
-    fn drive_travel<M: Manipulator>(
-        &self,
-        body: BodyIndex,
-        pose: &Isometry3<f64>,
-        a: &TabletopState<M>,
-        b: &TabletopState<M>,
-    ) -> f64 {
-        let Some((centre, radius)) = self.model().ball(body) else { return f64::INFINITY };
-        let [x, y, yaw] = a.robot.base;
-        let drive = (b.robot.base[0] - x).hypot(b.robot.base[1] - y);
-        let centre = pose * centre;
-        drive + turn(yaw, b.robot.base[2]).abs() * ((centre.x - x).hypot(centre.y - y) + radius)
-    }
-
     fn advance<M: Manipulator>(
         &self,
         m: &Tabletop<M>,
@@ -241,7 +158,7 @@ impl SceneValidity {
             if let Err(blame) = Self::check_limits(m, &next) {
                 return FreePrefix::blocked(t, blame);
             }
-            let leg = self.leg(m, &here, &next, (end, end - t), worker);
+            let leg = Leg::new(m, &here, &next, (t, end), worker);
             if let Err((free, blame)) = self.advance_leg(m, instance, &leg, t, &mut here, &mut next, worker) {
                 return FreePrefix::blocked(free, blame);
             }
@@ -277,7 +194,7 @@ impl SceneValidity {
         let (cap, least) = (strictness.cap_m / leg.fastest, unseen_m / leg.fastest);
         // Nothing touches up to here, and the rules were last found kept there.
         let (mut free, mut kept) = (t, t);
-        around.watch(worker, (&leg.moved, &leg.against, &leg.chain), (t, leg.end));
+        leg.watch(around, worker);
         loop {
             let until = around.free_until(worker, t, cap).map_err(|hit| (free, around.blame(&hit)))?;
             self.check_moved_objects(m, here, &leg.moved).map_err(|blame| (kept, blame))?;

@@ -3,6 +3,7 @@
 
 use darrt_core::laws::check_accounts;
 use darrt_core::search::Darrt;
+use darrt_core::shorten::ShortenOptions;
 use darrt_fuzz::text::text;
 use darrt_pr2::planning::{prepare, strategy};
 use darrt_pr2::problem_file::{ProblemFile, ShapeSpec, builtin_text};
@@ -18,7 +19,9 @@ fuzz_target!(|data: &[u8]| {
         return;
     }
     let Ok(prepared) = prepare(&file) else { return };
-    let Ok(strategy) = strategy(&file.sampling, file.sampling.sampler, file.sampling.distance) else { return };
+    let Ok(mut strategy) = strategy(&file.sampling, file.sampling.sampler, file.sampling.distance) else { return };
+    // Hundreds of extensions more once a plan is found.
+    strategy.shorten = ShortenOptions::default();
     let mut darrt = Darrt::new(&prepared.problem, &strategy, data.len() as u64, 0, 10_000);
     for _ in 0..ITERATIONS {
         let step = darrt.step();

@@ -3,6 +3,7 @@
 use super::pair::{self, Bound};
 use super::solid::{Kind, Plane, Solid};
 use super::{CollisionModel, Hit, Poses, Query, Scratch};
+use crate::batch::NearBox;
 use crate::body_set::BodyIndex;
 use crate::narrow::{self, Gap, Posed};
 use crate::place;
@@ -40,12 +41,12 @@ impl CollisionModel {
     /// A lower bound of the least distance over the tested pairs, at most `start`.
     pub(super) fn scan(&self, scratch: &mut Scratch, query: &Query<'_>, start: f64) -> Result<f64, Hit> {
         self.ensure_fits(scratch);
-        let Scratch { poses, distances, candidates, .. } = scratch;
+        let Scratch { poses, near, candidates, .. } = scratch;
         if let Some(hit) = Self::unsound(poses) {
             return Err(hit);
         }
         candidates.clear();
-        self.against_fixed(poses, query, start, distances, candidates);
+        self.against_fixed(poses, query, start, near, candidates);
         self.against_moving(poses, query, start, candidates);
         let mut best = self.against_planes(poses, query, start)?;
         // The most promising candidate first: it rules out most of the others.
@@ -79,18 +80,20 @@ impl CollisionModel {
         poses: &Poses,
         query: &Query<'_>,
         start: f64,
-        distances: &mut Vec<f64>,
+        near: &mut Vec<NearBox>,
         candidates: &mut Vec<Candidate>,
     ) {
         for body in query.moved.intersection(&self.moving).iter() {
             let registered = &self.bodies[body.get()];
-            self.fixed_boxes.distances(&poses.centres[body.get()], registered.radius, distances);
-            for (&other, &distance) in self.fixed_solids.iter().zip(&*distances) {
+            let enough = enough(query, start);
+            self.fixed_boxes.near(&poses.centres[body.get()], enough + registered.radius, near);
+            for found in &*near {
+                let other = self.fixed_solids[found.index];
                 let partner = self.solids[other].body;
-                let enough = enough(query, start);
-                if distance >= enough || !registered.partners.contains(partner) || !Self::asked(query, body, partner) {
+                if !registered.partners.contains(partner) || !Self::asked(query, body, partner) {
                     continue;
                 }
+                let distance = found.distance - registered.radius;
                 for own in registered.solids.clone() {
                     let bound = if registered.solids.len() == 1 {
                         distance

@@ -24,9 +24,14 @@ pub struct Travel<'a> {
 
 impl Travel<'_> {
     #[inline]
+    fn of(&self, body: BodyIndex) -> f64 {
+        self.reach.get(body.get()).copied().unwrap_or(0.0)
+    }
+
+    #[inline]
     fn speed(&self, a: BodyIndex, b: BodyIndex) -> f64 {
-        let of = |body: BodyIndex| self.reach.get(body.get()).copied().unwrap_or(0.0);
-        if self.chain.contains(a) && self.chain.contains(b) { of(a).max(of(b)) } else { of(a) + of(b) }
+        let (a_alone, b_alone) = (self.of(a), self.of(b));
+        if self.chain.contains(a) && self.chain.contains(b) { a_alone.max(b_alone) } else { a_alone + b_alone }
     }
 }
 
@@ -64,25 +69,26 @@ impl CollisionModel {
     /// Of `query` the cap does not count. Pairs of which neither body travels are not looked at.
     pub fn watch(&self, scratch: &mut Scratch, query: &Query<'_>, travel: &Travel<'_>) {
         self.ensure_fits(scratch);
-        let Scratch { poses, distances, watch, .. } = scratch;
+        let Scratch { poses, near, watch, .. } = scratch;
         watch.pairs.clear();
         watch.to = travel.to;
         watch.clearance = query.clearance.max(0.0);
-        let near = too_near(query);
+        let too_near = too_near(query);
         let span = travel.to - travel.from;
         // A pair farther apart than this does not matter on this leg.
-        let enough = |speed: f64| (watch.clearance + span * speed).max(near);
+        let enough = |speed: f64| (watch.clearance + span * speed).max(too_near);
         for body in query.moved.intersection(&self.moving).iter() {
             let registered = &self.bodies[body.get()];
-            self.fixed_boxes.distances(&poses.centres[body.get()], registered.radius, distances);
-            for (&other, &distance) in self.fixed_solids.iter().zip(&*distances) {
+            // Fixed bodies do not travel.
+            let speed = travel.of(body);
+            if speed <= 0.0 {
+                continue;
+            }
+            self.fixed_boxes.near(&poses.centres[body.get()], enough(speed) + registered.radius, near);
+            for found in &*near {
+                let other = self.fixed_solids[found.index];
                 let partner = self.solids[other].body;
-                let speed = travel.speed(body, partner);
-                if speed <= 0.0
-                    || distance >= enough(speed)
-                    || !registered.partners.contains(partner)
-                    || !Self::asked(query, body, partner)
-                {
+                if !registered.partners.contains(partner) || !Self::asked(query, body, partner) {
                     continue;
                 }
                 let other = Other::Solid(other);
@@ -90,8 +96,7 @@ impl CollisionModel {
                 watch.pairs.extend(own.map(|own| Watched { own, other, speed, until: travel.from }));
             }
             for (number, plane) in self.planes.iter().enumerate() {
-                let speed = travel.speed(body, plane.body);
-                if speed > 0.0 && registered.partners.contains(plane.body) && Self::asked(query, body, plane.body) {
+                if registered.partners.contains(plane.body) && Self::asked(query, body, plane.body) {
                     let other = Other::Plane(number);
                     let own = registered.solids.clone();
                     watch.pairs.extend(own.map(|own| Watched { own, other, speed, until: travel.from }));
