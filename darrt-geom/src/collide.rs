@@ -8,6 +8,7 @@
 //! for moving pairs, then (only for pairs that could still lower the minimum) a tight closed-form bound, and last of all
 //! parry's iteration.
 
+mod clear;
 mod model;
 mod pair;
 mod rod;
@@ -116,6 +117,7 @@ pub struct Scratch {
     near: Vec<NearBox>,
     candidates: Vec<scan::Candidate>,
     watch: watch::Watch,
+    met: Option<clear::Met>,
 }
 
 impl CollisionModel {
@@ -131,6 +133,7 @@ impl CollisionModel {
             near: Vec::new(),
             candidates: Vec::new(),
             watch: watch::Watch::default(),
+            met: None,
         }
     }
 

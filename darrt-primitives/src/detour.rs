@@ -146,7 +146,7 @@ impl<M: Manipulator> Search<'_, M> {
         let (moved, against) = &self.pairs;
         let around = self.m.surroundings();
         around.pose(robot, &self.state, moved, self.worker);
-        around.lower_bound(self.worker, moved, against, 0.0).is_ok()
+        around.is_clear(self.worker, moved, against)
     }
 
     /// How far the straight way from `a`, which is free, to `b` seems to be free, in `[0, 1]`.

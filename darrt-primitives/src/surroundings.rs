@@ -151,7 +151,7 @@ impl Surroundings {
                 self.model.set_pose(&mut worker.scratch, *id, &Isometry3::identity());
             }
             let against = BodySet::ALL.difference(self.model.moving());
-            self.lower_bound(worker, &self.base_links, &against, 0.0).is_ok()
+            self.is_clear(worker, &self.base_links, &against)
         })
     }
 
@@ -380,6 +380,13 @@ impl Surroundings {
         cap_m: f64,
     ) -> Result<f64, Hit> {
         self.lower_bound_at(worker, moved, against, cap_m, self.strictness.clearance_m)
+    }
+
+    /// Are the pairs of one body in `moved` and one in `against` clear? [`Surroundings::lower_bound`] without reasons.
+    pub(crate) fn is_clear(&self, worker: &mut Worker, moved: &BodySet, against: &BodySet) -> bool {
+        let Worker { scratch, allowed, .. } = worker;
+        let clearance = self.strictness.clearance_m;
+        self.model.is_clear(scratch, &Query { moved, against, allowed, clearance, cap: 0.0 })
     }
 
     /// [`Surroundings::lower_bound`] with another clearance.

@@ -171,11 +171,16 @@ impl CollisionModel {
         if candidate.bound >= enough {
             return Ok(best);
         }
-        Ok(best.min(self.settle(poses, candidate.solids, candidate.bound, enough, too_near(query))?))
+        let (i, j) = candidate.solids;
+        let settled = self.settle(poses, (i, j), candidate.bound, enough, too_near(query));
+        settled.map(|bound| best.min(bound)).map_err(|separation| self.hit(poses, (i, j), separation))
     }
 
     /// A lower bound of the distance of two solids that is at least `bound`; tightened until it is `enough` or cannot be
-    /// tightened any more. A hit if they are nearer than `near`.
+    /// tightened any more.
+    ///
+    /// # Errors
+    /// What [`Hit::separation`] is to say, if they are nearer than `near`.
     pub(super) fn settle(
         &self,
         poses: &Poses,
@@ -183,7 +188,7 @@ impl CollisionModel {
         bound: f64,
         enough: f64,
         near: f64,
-    ) -> Result<f64, Hit> {
+    ) -> Result<f64, f64> {
         let (a, b) = (&self.solids[i], &self.solids[j]);
         let closed_form = pair::bound(a, &poses.placed[i], b, &poses.placed[j], enough);
         let mut value = closed_form.value().max(bound);
@@ -197,31 +202,32 @@ impl CollisionModel {
         };
         if doubtful {
             match narrow::gap(&posed(poses, a), &posed(poses, b)) {
-                Gap::Closed => return Err(hit(poses, a, b, value.min(0.0))),
+                Gap::Closed => return Err(value.min(0.0)),
                 Gap::Open { distance, lower, .. } => {
                     if distance < near {
-                        return Err(hit(poses, a, b, distance));
+                        return Err(distance);
                     }
                     value = value.max(lower);
                 }
             }
         } else if value < near {
-            return Err(hit(poses, a, b, value));
+            return Err(value);
         }
         Ok(value)
+    }
+
+    /// Two solids that are too near.
+    pub(super) fn hit(&self, poses: &Poses, (i, j): (usize, usize), separation: f64) -> Hit {
+        let (a, b) = (&self.solids[i], &self.solids[j]);
+        let (first, second) = (poses.world_from_shape(a), poses.world_from_shape(b));
+        let place = place::shared(&a.shape, &first, &b.shape, &second);
+        Hit { first: a.body, second: b.body, place, separation }
     }
 }
 
 /// A solid as the narrow phase wants it.
 fn posed<'a>(poses: &Poses, solid: &'a Solid) -> Posed<'a> {
     Posed { shape: &solid.shape, parry: &solid.parry, world_from_shape: poses.world_from_shape(solid) }
-}
-
-/// Two solids that are too near.
-fn hit(poses: &Poses, a: &Solid, b: &Solid, separation: f64) -> Hit {
-    let (first, second) = (poses.world_from_shape(a), poses.world_from_shape(b));
-    let place = place::shared(&a.shape, &first, &b.shape, &second);
-    Hit { first: a.body, second: b.body, place, separation }
 }
 
 /// A solid that is too near to a half space.

@@ -199,6 +199,26 @@ proptest! {
     }
 
     #[test]
+    fn yes_or_no_is_what_the_reasons_say(
+        first in world(bounded().boxed(), any_shape()), at in prop::collection::vec(prop::array::uniform3(-1.0_f64..1.0), 3),
+        clearance in 0.0_f64..0.1,
+    ) {
+        let (model, mut scratch) = first.model();
+        let none = AllowedContacts::none();
+        let query = Query { moved: &BodySet::ALL, against: &BodySet::ALL, allowed: &none, clearance, cap: 0.0 };
+        // The second state is asked about with the first one's answer in memory, and then the first again.
+        let poses: Vec<_> = first.bodies.iter().take(first.moving).map(|(_, pose)| *pose).collect();
+        let moved: Vec<_> = poses.iter().zip(&at).map(|(pose, at)| Isometry3::translation(at[0], at[1], at[2]) * pose).collect();
+        for poses in [&poses, &moved, &poses] {
+            model.set_poses(&mut scratch, poses);
+            let expected = model.lower_bound(&mut scratch, &query).is_ok();
+            prop_assert_eq!(model.is_clear(&mut scratch, &query), expected);
+            let nobody = Query { moved: &BodySet::EMPTY, ..query };
+            prop_assert!(model.is_clear(&mut scratch, &nobody), "what nobody asks about does not count");
+        }
+    }
+
+    #[test]
     fn a_watched_motion_is_free_as_far_as_it_says(
         world in world(bounded().boxed(), any_shape()),
         along in prop::collection::vec(prop::array::uniform3(-1.0_f64..1.0), 3), clearance in 0.0_f64..0.05,

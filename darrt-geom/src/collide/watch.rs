@@ -37,7 +37,7 @@ impl Travel<'_> {
 
 /// What a solid is watched against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Other {
+pub(super) enum Other {
     /// Number in [`CollisionModel::solids`].
     Solid(usize),
     /// Number in [`CollisionModel::planes`].
@@ -147,7 +147,11 @@ impl CollisionModel {
             }
             let enough = (*clearance + (best - now) * pair.speed).max(near);
             let distance = match pair.other {
-                Other::Solid(other) => self.distance(poses, (pair.own, other), enough, near)?,
+                Other::Solid(other) => {
+                    let solids = (pair.own, other);
+                    let distance = self.distance(poses, solids, enough, near);
+                    distance.map_err(|separation| self.hit(poses, solids, separation))?
+                }
                 Other::Plane(plane) => self.height(poses, (pair.own, plane), enough, near)?,
             };
             pair.until = now + (distance - *clearance) / pair.speed;
@@ -169,7 +173,10 @@ impl CollisionModel {
     }
 
     /// Lower bound of the distance of two solids, as tight as need be to tell whether it is `enough`.
-    fn distance(&self, poses: &Poses, (i, j): (usize, usize), enough: f64, near: f64) -> Result<f64, Hit> {
+    ///
+    /// # Errors
+    /// See [`CollisionModel::settle`].
+    pub(super) fn distance(&self, poses: &Poses, (i, j): (usize, usize), enough: f64, near: f64) -> Result<f64, f64> {
         let (a, b) = (&self.solids[i], &self.solids[j]);
         let (placed_a, placed_b) = (&poses.placed[i], &poses.placed[j]);
         let bound = if self.bodies[b.body.get()].fixed.is_some() {

@@ -6,11 +6,14 @@ use std::sync::Arc;
 use darrt_core::laws::{ValidityClaims, check_against_oracle, check_enlarged, check_validity};
 use darrt_core::random::{Purpose, stream};
 use darrt_core::testing::strategies::{config, tasks_from};
+use darrt_core::validity::Validity as _;
 use darrt_pr2::planning::prepare;
-use darrt_pr2::problem_file::ProblemFile;
+use darrt_pr2::problem_file::{ProblemFile, ShapeSpec};
+use darrt_pr2::world;
 use darrt_primitives::mode::Contacts;
 use darrt_primitives::testing::scene_oracle::SceneOracle;
 use darrt_primitives::testing::strategies::any_mode;
+use darrt_primitives::validity::SceneValidity;
 use proptest::prelude::*;
 
 use crate::support::{PROBLEMS, file, obstacles, problem, valid_states};
@@ -91,4 +94,40 @@ fn more_obstacles_forbid_more() {
         differ.set(differ.get() + u32::from(is_valid(&without) && !is_valid(&with)));
     });
     assert!(differ.get() >= 1, "the obstacle is in nobody's way");
+}
+
+/// The same room, in which what stands about is larger by `by` metres on every side.
+fn with_larger_obstacles(name: &str, by: f64) -> ProblemFile {
+    let mut file = file(name);
+    // What carries something keeps its height.
+    let carries = |name: &str| file.surfaces.iter().any(|surface| surface.carrying_body() == Some(name));
+    let grown: Vec<bool> = file.obstacles.iter().map(|obstacle| !carries(&obstacle.name)).collect();
+    for (obstacle, _) in file.obstacles.iter_mut().zip(grown).filter(|(_, is_grown)| *is_grown) {
+        match &mut obstacle.shape {
+            ShapeSpec::Box { size } => size.iter_mut().for_each(|edge| *edge += 2.0 * by),
+            ShapeSpec::Sphere { radius } => *radius += by,
+            ShapeSpec::Cylinder { radius, height } | ShapeSpec::Capsule { radius, height } => {
+                *radius += by;
+                *height += 2.0 * by;
+            }
+            _ => {}
+        }
+    }
+    file
+}
+
+#[test]
+fn larger_obstacles_forbid_more() {
+    for name in PROBLEMS {
+        let (larger, given) = (world::build(&with_larger_obstacles(name, 0.04)).unwrap(), problem(name));
+        let larger = SceneValidity::new(&larger.world);
+        let differ = Cell::new(0);
+        let m = given.domain();
+        proptest!(config(192, REGRESSIONS), |(state in valid_states(&given))| {
+            let none = Contacts::default();
+            check_enlarged(m, given.validity(), &larger, &state, &none)?;
+            differ.set(differ.get() + u32::from(larger.check(m, &state, &none).is_err()));
+        });
+        assert!(differ.get() >= 1, "{name}: the obstacles are in nobody's way");
+    }
 }

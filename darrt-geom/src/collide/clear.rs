@@ -1,0 +1,91 @@
+//! Yes or no: is every tested pair clear? For searches that ask about many states and need no reasons.
+
+use super::scan::too_near;
+use super::watch::Other;
+use super::{CollisionModel, Poses, Query, Scratch};
+
+/// Two solids that were too near when last looked at, or a solid and a half space.
+pub(super) type Met = (usize, Other);
+
+impl CollisionModel {
+    /// Is no tested pair nearer than the clearance? The same as [`CollisionModel::lower_bound`] with a cap of 0, without
+    /// saying which pair; of `query` the cap does not count.
+    ///
+    /// The pair that was too near the last time is asked about first: neighbouring states mostly fail for the same reason.
+    pub fn is_clear(&self, scratch: &mut Scratch, query: &Query<'_>) -> bool {
+        self.ensure_fits(scratch);
+        if Self::unsound(&scratch.poses).is_some() {
+            return false;
+        }
+        if let Some((own, other)) = scratch.met
+            && self.is_asked(query, own, other)
+            && self.meets(&scratch.poses, own, other, too_near(query))
+        {
+            return false;
+        }
+        scratch.met = self.first_met(scratch, query);
+        scratch.met.is_none()
+    }
+
+    /// Whether the query asks about these two, and the model tests them.
+    fn is_asked(&self, query: &Query<'_>, own: usize, other: Other) -> bool {
+        let partner = match other {
+            Other::Solid(solid) => self.solids.get(solid).map(|solid| solid.body),
+            Other::Plane(plane) => self.planes.get(plane).map(|plane| plane.body),
+        };
+        let (Some(own), Some(partner)) = (self.solids.get(own), partner) else { return false };
+        let is_moved = query.moved.contains(own.body) || self.moving.contains(partner);
+        is_moved && self.is_tested(own.body, partner) && Self::asked(query, own.body, partner)
+    }
+
+    fn meets(&self, poses: &Poses, own: usize, other: Other, near: f64) -> bool {
+        match other {
+            Other::Solid(solid) => self.distance(poses, (own, solid), near, near).is_err(),
+            Other::Plane(plane) => self.height_over(poses, own, &self.planes[plane], near) < near,
+        }
+    }
+
+    fn first_met(&self, scratch: &mut Scratch, query: &Query<'_>) -> Option<Met> {
+        let Scratch { poses, near: boxes, .. } = scratch;
+        let near = too_near(query);
+        for body in query.moved.intersection(&self.moving).iter() {
+            let registered = &self.bodies[body.get()];
+            self.fixed_boxes.near(&poses.centres[body.get()], near + registered.radius, boxes);
+            for found in &*boxes {
+                let other = self.fixed_solids[found.index];
+                let partner = self.solids[other].body;
+                if !registered.partners.contains(partner) || !Self::asked(query, body, partner) {
+                    continue;
+                }
+                let met = |own: &usize| self.meets(poses, *own, Other::Solid(other), near);
+                if let Some(own) = registered.solids.clone().find(met) {
+                    return Some((own, Other::Solid(other)));
+                }
+            }
+            for (number, plane) in self.planes.iter().enumerate() {
+                if !registered.partners.contains(plane.body) || !Self::asked(query, body, plane.body) {
+                    continue;
+                }
+                let met = |own: &usize| self.meets(poses, *own, Other::Plane(number), near);
+                if let Some(own) = registered.solids.clone().find(met) {
+                    return Some((own, Other::Plane(number)));
+                }
+            }
+        }
+        for &(a, b) in &self.moving_pairs {
+            let (of_a, of_b) = (&self.bodies[a.get()], &self.bodies[b.get()]);
+            let reach = near + of_a.radius + of_b.radius;
+            let apart = (poses.centres[b.get()] - poses.centres[a.get()]).norm_squared();
+            if apart >= reach * reach || !Self::asked(query, a, b) {
+                continue;
+            }
+            for own in of_a.solids.clone() {
+                let met = |other: &usize| self.meets(poses, own, Other::Solid(*other), near);
+                if let Some(other) = of_b.solids.clone().find(met) {
+                    return Some((own, Other::Solid(other)));
+                }
+            }
+        }
+        None
+    }
+}
