@@ -84,6 +84,34 @@ fn a_prefix_without_blame_is_not_a_free_motion() {
     }
 }
 
+/// Rounding must not shift the end: what was found free ends there, bit for bit.
+#[test]
+fn the_last_state_lies_exactly_where_the_free_part_ends() {
+    for fraction in [0.1, 0.3, 0.55, 0.7, 0.9, 0.999] {
+        let mut parts = small().puck_goal(0, [1.5, 1.5]).parts().unwrap();
+        parts.validity = Box::new(Always(FreePrefix { fraction, blame: None }));
+        let problem = Problem::new(parts).unwrap();
+        let target = PartialState::anywhere(problem.domain()).with_robot(problem.domain(), [0.5, 0.3]);
+        for spacing_m in [0.01, 0.03, 0.07] {
+            let options = ExtendOptions { spacing_m, ..ExtendOptions::default() };
+            let e = extend_towards(&problem, &options, problem.start(), &target, &mut rng(0));
+            assert_eq!(e.reached.last().unwrap().t, fraction);
+            assert_eq!(e.reached.len() as f64, (0.7 * fraction / spacing_m).ceil());
+        }
+    }
+}
+
+#[test]
+fn one_step_is_not_longer_than_the_spacing() {
+    let problem = small().puck_goal(0, [1.5, 1.5]).problem().unwrap();
+    let target = PartialState::anywhere(problem.domain()).with_robot(problem.domain(), [0.5, 0.5]);
+    for (spacing_m, states) in [(0.6, 1), (0.5, 1), (0.3, 2), (0.2, 3)] {
+        let options = ExtendOptions { spacing_m, ..ExtendOptions::default() };
+        let e = extend_towards(&problem, &options, problem.start(), &target, &mut rng(0));
+        assert_eq!(e.reached.len(), states, "{spacing_m}");
+    }
+}
+
 #[test]
 fn spacings_out_of_range_are_named_and_do_no_harm() {
     let problem = small().puck_goal(0, [1.5, 1.5]).problem().unwrap();
@@ -95,6 +123,7 @@ fn spacings_out_of_range_are_named_and_do_no_harm() {
         assert_eq!(e.reached.last().unwrap().state.robot, [0.5, 0.5]);
         assert_eq!(options.check().is_err(), spacing_m != 1e-300, "{spacing_m}");
     }
+    assert!(ExtendOptions { max_depth: 1, ..ExtendOptions::default() }.check().is_ok());
     let no_depth = ExtendOptions { max_depth: 0, ..ExtendOptions::default() };
     assert_eq!(no_depth.check().unwrap_err().to_string(), "max_depth is 0, but must be at least 1");
 }

@@ -3,6 +3,8 @@
 #[cfg(test)]
 mod accounts;
 #[cfg(test)]
+mod around;
+#[cfg(test)]
 mod clearance;
 #[cfg(test)]
 mod extension;
@@ -18,6 +20,8 @@ mod printing;
 mod problem_errors;
 #[cfg(test)]
 mod refusals;
+#[cfg(test)]
+mod replay;
 #[cfg(test)]
 mod shortened;
 #[cfg(test)]

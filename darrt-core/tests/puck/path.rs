@@ -4,11 +4,12 @@ use darrt_core::extend::{ExtendOptions, extend_towards};
 use darrt_core::observe::accounts::Bucket;
 use darrt_core::partial::PartialState;
 use darrt_core::path::{Path, PathEnd, Trial, path};
-use darrt_core::primitive::Primitive;
+use darrt_core::primitive::{Infeasible, Instances, Primitive};
 use darrt_core::problem::Problem;
 use darrt_core::state::State;
-use darrt_core::testing::puck::Point;
-use darrt_core::validity::BlockKind;
+use darrt_core::testing::puck::{Point, Setup};
+use darrt_core::validity::{Blame, BlockKind};
+use rand::Rng;
 
 use super::support::{Made, World, options, rng, run, small};
 
@@ -93,6 +94,63 @@ fn a_useful_primitive_that_fails_gives_way_to_another() {
         assert_eq!((e.end, e.instances.len()), (PathEnd::Met, 1));
         assert_eq!(e.useful[..], [true, true]);
     }
+}
+
+#[test]
+fn the_buckets_tell_who_got_how_far() {
+    use Bucket::{Accepted, Behind, Depth, NotUseful, RobotFixed};
+    type Move = Made<fn(&State<World>) -> bool, fn(&State<World>) -> Vec<Point>>;
+    let down = || Move { name: "Down", useful: |s| s.robot[1] > 0.7 && s.robot[0] < 1.0, visit: |_| vec![[0.5, 0.5]] };
+    let right = || Move { name: "Right", useful: |s| s.robot == [0.5, 0.5], visit: |_| vec![[2.0, 0.5]] };
+    let up = || Move { name: "Up", useful: |s| s.robot[0] > 1.0, visit: |_| vec![[2.0, 1.5]] };
+    let buckets = |setup: Setup, max_depth| {
+        let mut parts = setup.puck_goal(0, [2.0, 1.0]).parts().unwrap();
+        parts.primitives = vec![Box::new(down()), Box::new(right()), Box::new(up())];
+        let problem = Problem::new(parts).unwrap();
+        let target = PartialState::anywhere(problem.domain()).with_robot(problem.domain(), [2.0, 1.5]);
+        let options = ExtendOptions { max_depth, ..ExtendOptions::default() };
+        extend_towards(&problem, &options, problem.start(), &target, &mut rng(0)).buckets.to_vec()
+    };
+    assert_eq!(buckets(small(), 5), [Accepted, Accepted, Accepted]);
+    assert_eq!(buckets(small(), 2), [Accepted, Depth, NotUseful]);
+    let walled = small().wall("wall", [1.2, 0.3], [1.3, 0.7]);
+    assert_eq!(buckets(walled, 5), [Accepted, RobotFixed, Behind]);
+}
+
+/// Finds something in the way before it goes anywhere.
+struct Walled(BlockKind);
+
+impl Primitive<World> for Walled {
+    fn name(&self) -> &'static str {
+        "Walled"
+    }
+
+    fn useful(&self, _: &World, _: &State<World>, _: &PartialState<World>) -> bool {
+        true
+    }
+
+    fn propagate(
+        &self,
+        _: &World,
+        _: &State<World>,
+        _: &PartialState<World>,
+        _: &mut dyn Rng,
+    ) -> Result<Instances<World>, Infeasible> {
+        let blame = Blame { kind: self.0, first: "robot".into(), second: "wall".into(), place: [0.0; 3] };
+        Err(Infeasible::Blocked(blame))
+    }
+}
+
+#[test]
+fn an_extension_tells_what_its_primitives_found_in_the_way() {
+    let mut parts = small().puck_goal(0, [2.0, 1.0]).parts().unwrap();
+    parts.primitives = vec![Box::new(Walled(BlockKind::RobotFixed))];
+    let problem = Problem::new(parts).unwrap();
+    let target = PartialState::anywhere(problem.domain()).with_robot(problem.domain(), [2.5, 1.7]);
+    let e = extend_towards(&problem, &ExtendOptions::default(), problem.start(), &target, &mut rng(0));
+    assert!(!e.is_met && e.reached.is_empty());
+    assert_eq!(e.blame.unwrap().kind, BlockKind::RobotFixed);
+    assert_eq!(e.buckets[..], [Bucket::RobotFixed]);
 }
 
 #[test]

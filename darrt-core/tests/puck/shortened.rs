@@ -2,19 +2,20 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use darrt_core::budget::{Cancel, Stop};
+use darrt_core::budget::{Cancel, Interrupt, Stop};
+use darrt_core::extend::{ExtendOptions, Extender};
 use darrt_core::goal::Goal;
 use darrt_core::observe::Silent;
 use darrt_core::plan::Plan;
 use darrt_core::problem::Problem;
 use darrt_core::search::Strategy;
-use darrt_core::shorten::ShortenOptions;
+use darrt_core::shorten::{ShortenOptions, shorten};
 use darrt_core::solve::{SolveOptions, solve};
 use darrt_core::state::State;
 use darrt_core::testing::puck::{paper_strategy, problems};
 use darrt_core::verify::{Refusal, Verifier};
 
-use super::support::{World, options, small};
+use super::support::{World, options, rng, small};
 
 fn shortening(extensions: usize) -> Strategy<World> {
     Strategy { shorten: ShortenOptions { extensions }, ..paper_strategy().unwrap() }
@@ -31,6 +32,37 @@ fn a_shortened_plan_never_has_more_steps_and_some_have_fewer() {
     let pairs: Vec<_> = (0..8).map(|seed| (steps(0, seed), steps(2000, seed))).collect();
     assert!(pairs.iter().all(|(found, short)| short <= found), "{pairs:?}");
     assert!(pairs.iter().any(|(found, short)| short < found), "{pairs:?}");
+}
+
+/// Where the effort ends in the middle, the old steps follow on the new ones. Seen directly: the planner drops a plan that
+/// does not verify, so that a wrong one would only look like none.
+#[test]
+fn every_shorter_plan_is_right_however_early_the_effort_ends() {
+    // Behind the last puck the robot still has to go somewhere.
+    let home = small().puck("blue", 0.12, [1.0, 1.5]).puck_goal(0, [2.0, 1.0]).puck_goal(1, [2.0, 1.5]);
+    let home = home.robot_goal([0.5, 0.5]).problem().unwrap();
+    let strategy = shortening(0);
+    let mut shorter = [0; 5];
+    for (problem, seed) in [problems::two_pucks().unwrap(), home].iter().flat_map(|p| (0..3).map(move |seed| (p, seed)))
+    {
+        let outcome = solve(problem, &strategy, &options(seed, 5000), &mut Silent);
+        let plan = outcome.solution.unwrap().plan().clone();
+        // Of little depth an extension reaches only what is near: the old steps stay up to there.
+        for max_depth in [1, 2, 20] {
+            let (limits, interrupt) = (ExtendOptions { max_depth, ..strategy.extend }, Interrupt::NEVER);
+            let extender = Extender { problem, options: &limits, reroute: None, interrupt };
+            for (extensions, shorter) in [0, 2, 8, 30, 100].into_iter().zip(&mut shorter) {
+                let effort = ShortenOptions { extensions };
+                let Some(short) = shorten(&extender, &plan, effort, &mut rng(seed)) else { continue };
+                *shorter += 1;
+                assert!(short.steps().len() < plan.steps().len());
+                let verdict = problem.verifier().verify(problem.domain(), problem.start(), problem.goal(), &short);
+                assert_eq!(verdict, Ok(()), "seed {seed}, depth {max_depth}, {extensions} extensions");
+            }
+        }
+    }
+    assert_eq!(shorter[0], 0, "no effort, no plan");
+    assert!(shorter.iter().filter(|n| **n > 0).count() >= 3, "{shorter:?}");
 }
 
 /// Cancels while it judges, and gives up. Counts the plans it is shown.

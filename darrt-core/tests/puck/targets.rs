@@ -1,10 +1,11 @@
 //! The algebra of partial states, and the distances to them.
 
 use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
+use darrt_core::domain::Domain;
 use darrt_core::nearest::linear::nearest_by;
 use darrt_core::partial::PartialState;
 use darrt_core::sample::{Full, RandomSubset, Sampler};
-use darrt_core::space::GroupSet;
+use darrt_core::space::{ComponentSpace, GroupSet};
 use darrt_core::state::{ComponentId, ComponentSet, State};
 use darrt_core::testing::puck::problems;
 use darrt_core::tree::Tree;
@@ -60,6 +61,21 @@ fn unknown_objects_and_empty_groups_name_nothing() {
     assert_eq!(state.object(id(9)), None);
     let no_group = PartialState::<World>::anywhere(&m).with_robot_groups([1.0, 1.0], GroupSet::NONE);
     assert_eq!(no_group, PartialState::anywhere(&m));
+}
+
+#[test]
+fn a_target_is_met_up_to_the_tolerance_and_no_further() {
+    let m = world();
+    let (robot, puck) = (m.robot().tolerance(), m.objects()[0].tolerance());
+    let mut state = random_pair(&m, &Full, 0).0;
+    state.robot = [0.0, 1.0];
+    state.objects[0] = [0.0, 2.0];
+    for (off, is_met) in [(0.0, true), (0.5, true), (1.0, true), (1.5, false)] {
+        let there = PartialState::anywhere(&m).with_robot(&m, [off * robot, 1.0]);
+        assert_eq!(there.is_robot_met(&m, &state), is_met, "{off}");
+        let there = PartialState::anywhere(&m).with_object(id(0), [off * puck, 2.0]);
+        assert_eq!(there.is_object_met(&m, &state, id(0)), is_met, "{off}");
+    }
 }
 
 #[test]

@@ -204,7 +204,20 @@ mod tests {
         assert!(contact.sticks(c, &Vector2::x()));
         assert!(!contact.sticks(c, &-Vector2::x()));
         assert!(!contact.sticks(c, &Vector2::zeros()));
-        assert!(PointContact::new(Vector2::new(f64::NAN, 0.0), contact.normal(), mu(0.3)).is_err());
+        for point in [Vector2::new(f64::NAN, 0.0), Vector2::new(0.0, f64::NAN)] {
+            assert!(PointContact::new(point, contact.normal(), mu(0.3)).is_err());
+        }
+    }
+
+    #[test]
+    fn the_border_of_the_motion_cone_belongs_to_it() {
+        let c = PressureConstant::uniform_disc(0.13).unwrap();
+        let cone = PointContact::on_disc(0.13, 0.0, mu(0.3)).unwrap().motion_cone(c);
+        assert!(cone.contains(&cone.left) && cone.contains(&cone.right));
+        assert!(!cone.contains(&-cone.left) && !cone.contains(&-cone.right) && !cone.contains(&Vector2::zeros()));
+        // Without friction the cone is one ray, and border only.
+        let smooth = PointContact::on_disc(0.13, 0.0, Friction::NONE).unwrap();
+        assert!(smooth.sticks(c, &Vector2::x()) && smooth.motion_cone(c).contains(&Vector2::x()));
     }
 
     proptest! {

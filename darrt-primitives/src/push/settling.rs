@@ -231,9 +231,25 @@ mod tests {
         assert_eq!(hand.fate(-0.2), Ok(Fate::Misses));
         let end = hand.push(-0.05, 0.2).unwrap();
         assert!(end.lateral_error < -0.05 && !end.both_touching);
-        assert_eq!(hand.push(-0.2, 0.2).unwrap().lateral_error, -0.2);
+        // It escapes as under one finger, which runs past the disc 0.01 m beside its centre.
+        let drift = DiscDrift::new(0.14, PressureConstant::uniform_disc(0.14).unwrap(), Friction::new(0.3).unwrap());
+        let alone = drift.unwrap().advance(-(0.01_f64 / 0.14).asin(), 0.2).unwrap();
+        assert!((end.lateral_error - (alone.offset - 0.04)).abs() < 1e-12);
+        assert!((end.rotation - alone.rotation).abs() < 1e-12);
+        let missed = Settled { lateral_error: -0.2, rotation: 0.0, both_touching: false };
+        assert_eq!(hand.push(-0.2, 0.2), Ok(missed));
         assert!(hand.fate(f64::NAN).is_err());
         assert!(hand.push(0.01, -1.0).is_err());
+    }
+
+    #[test]
+    fn on_the_line_of_a_finger_it_escapes_and_at_its_rim_it_is_missed() {
+        let hand = funnel(0.3);
+        assert_eq!(hand.fate(0.04), Ok(Fate::Escapes));
+        assert_eq!(hand.fate(0.04 + 0.14), Ok(Fate::Misses));
+        let c = PressureConstant::uniform_disc(0.14).unwrap();
+        let of_gap = |gap| Funnel::new(0.14, gap, c, Friction::NONE);
+        assert!(of_gap(0.279).is_ok() && of_gap(0.28).is_err());
     }
 
     #[test]

@@ -151,6 +151,12 @@ fn a_level_hand_needs_an_overhang_of_the_insertion() {
 }
 
 #[test]
+fn azimuths_are_spread_over_the_turn() {
+    let found: Vec<_> = azimuths(4).map(|a| a.to_degrees().round()).collect();
+    assert_eq!(found, [0.0, 90.0, 180.0, 270.0]);
+}
+
+#[test]
 fn a_plate_well_inside_cannot_be_grasped_at_all() {
     for azimuth in azimuths(48) {
         let center = Point2::new(-0.5, -0.5);

@@ -90,6 +90,48 @@ fn an_indented_table_is_not_crossed() {
     assert_eq!(none, Err(NoPush::EdgeTooNarrow));
 }
 
+/// A table of 2 m by 2 m, so that borders are exact in floating point.
+fn square(rule: EdgeRule, target_margin: f64, from: [f64; 2], target: [f64; 2]) -> Result<PushEnd, NoPush> {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Point2::new(x, y));
+    let table = SupportSurface::new("table", &corners, 0.75).unwrap();
+    let stop = EdgeStop { rule, target_margin, edge_distance: 0.375 };
+    stop.end_of_push(&table, &Point2::from(from), &Point2::from(target))
+}
+
+#[test]
+fn borders_of_the_edge_distances() {
+    let exact = RimReach { insertion: 0.25, clearance: 0.25, tip_margin: 0.5 };
+    let one = exact.edge_distances(1.0).unwrap().unwrap();
+    assert_eq!((one.least(), one.most()), (0.5, 0.5));
+    assert!(EdgeDistances::new(0.0, 0.1).is_ok() && EdgeDistances::new(-0.1, 0.1).is_err());
+    let some = EdgeDistances::new(0.03, 0.1).unwrap();
+    assert!(some.contains(0.0299, 1e-3) && some.contains(0.1001, 1e-3));
+    assert!(!some.contains(0.0299, 1e-5) && !some.contains(0.1001, 1e-5));
+}
+
+#[test]
+fn a_target_at_the_margin_lies_on_the_table() {
+    let rule = EdgeRule::NearestEdgePoint;
+    assert_center(square(rule, 0.25, [0.0, 0.0], [0.75, 0.0]), 0.75, 0.0, false);
+    assert_center(square(rule, 0.25, [0.0, 0.0], [0.8, 0.0]), 0.625, 0.0, true);
+    // With no margin a push may end on the edge itself.
+    assert_center(square(rule, 0.0, [0.0, 0.0], [1.0, 0.0]), 1.0, 0.0, false);
+}
+
+#[test]
+fn a_push_that_brings_nothing_nearer_is_not_made() {
+    // The stop is at (0.625, 0), 0.625 m from the target, as far as the object is (3, 4, 5).
+    let aside = square(EdgeRule::NearestEdgePoint, 0.25, [0.875, 0.5], [1.25, 0.0]);
+    assert_eq!(aside, Err(NoPush::NothingToDo));
+    assert!(square(EdgeRule::NearestEdgePoint, 0.25, [0.875, 0.625], [1.25, 0.0]).is_ok());
+}
+
+#[test]
+fn the_line_to_one_edge_gives_way_to_another() {
+    // It meets the right edge at (0.45, 0.56), but is within 0.06 m of the upper edge from (0.3, 0.54) on.
+    assert_center(end(EdgeRule::LineCrossing, [0.0, 0.5], [0.9, 0.62]), 0.3, 0.54, true);
+}
+
 proptest! {
     #[test]
     fn an_edge_limited_stop_keeps_its_distance(

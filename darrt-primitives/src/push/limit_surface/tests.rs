@@ -78,7 +78,7 @@ fn exact_disc_at_its_ends_and_across_the_rim() {
     let (inside, outside) = (exact_disc(1.0).unwrap(), exact_disc(1.0 + 1e-12).unwrap());
     assert_near(inside.force, outside.force, 1e-9);
     assert_near(inside.moment, outside.moment, 1e-9);
-    assert!(exact_disc(-0.1).is_err());
+    assert!(exact_disc(-0.1).is_err() && exact_disc(1.1e6).is_err());
 }
 
 #[test]
@@ -113,6 +113,29 @@ fn centre_of_rotation_of_the_sharpest_turn() {
     // The force passes on the right (y < 0), so the centre of rotation lies on the left.
     assert_near(cor.x, 0.0, 1e-15);
     assert_near(cor.y, 0.181_80, 5.1e-6);
+}
+
+#[test]
+fn the_largest_force_and_moment_lie_on_the_surface() {
+    let c = PressureConstant::new(0.1).unwrap();
+    for max_force in [0.5, 3.0] {
+        let surface = LimitSurface::new(c, max_force).unwrap();
+        let slide = Wrench { force: Vector2::new(0.0, -max_force), moment: 0.0 };
+        let spin = Wrench { force: Vector2::zeros(), moment: surface.max_moment() };
+        assert_near(surface.level(&slide), 1.0, 1e-12);
+        assert_near(surface.level(&spin), 1.0, 1e-12);
+        let half = Wrench { force: 0.5 * slide.force, moment: 0.0 };
+        assert_near(surface.level(&half), 0.5, 1e-12);
+    }
+}
+
+#[test]
+fn a_force_through_the_centre_turns_nothing() {
+    let c = PressureConstant::new(0.1).unwrap();
+    let straight = Wrench { force: Vector2::new(0.3, 0.4), moment: 0.0 };
+    assert_eq!(c.center_of_rotation(&straight), None);
+    assert_eq!(c.rotation_distance(0.0), f64::INFINITY);
+    assert_eq!(c.rotation_distance(-0.05), c.rotation_distance(0.05));
 }
 
 proptest! {

@@ -52,6 +52,7 @@ fn a_rectangle_pushed_near_its_corner() {
         check(pushed, ContactMode::Sticking, linear, angular);
     }
     assert_eq!(push(&contact, pressure, &-Vector2::y()), None);
+    assert_eq!(push(&contact, pressure, &Vector2::x()), None);
     assert_eq!(push(&contact, pressure, &Vector2::new(f64::NAN, 1.0)), None);
 }
 
@@ -113,6 +114,7 @@ fn closed_forms_agree_with_integration_across_the_cone_edge() {
         (uniform(), 0.1, 0.2, 0.15),
         (uniform(), 0.0, 0.3, 0.1),
         (PressureConstant::rim(R).unwrap(), 0.5, 0.7, 0.1),
+        (PressureConstant::rim(R).unwrap(), 1.0, 1.2, 0.05),
     ] {
         let drift = DiscDrift::new(R, pressure, mu(friction)).unwrap();
         let (psi, rotation) = integrate(&drift, start, length);
@@ -130,10 +132,20 @@ fn the_finger_loses_the_disc_in_the_end() {
     assert_eq!(end.psi, -FRAC_PI_2);
     assert_eq!(drift.advance(0.0, 5.0).unwrap().psi, 0.0);
     assert_eq!(drift.length_between(0.0, 0.2).unwrap(), f64::INFINITY);
+    assert_eq!(drift.length_between(0.0, 0.0).unwrap(), 0.0);
     assert!(drift.advance(2.0, 0.1).is_err());
     assert!(drift.advance(0.2, -0.1).is_err());
     assert!(drift.length_between(0.3, 0.2).is_err());
     assert!(drift.psi_of_offset(0.2).is_err());
+}
+
+#[test]
+fn the_finger_slips_beyond_the_sticking_limit() {
+    let drift = DiscDrift::new(R, uniform(), mu(0.3)).unwrap();
+    for (psi, sticks) in [(drift.sticking_limit() - 1e-6, true), (drift.sticking_limit() + 1e-6, false)] {
+        let contact = PointContact::on_disc(R, psi, mu(0.3)).unwrap();
+        assert_eq!(contact.sticks(uniform(), &Vector2::x()), sticks);
+    }
 }
 
 proptest! {

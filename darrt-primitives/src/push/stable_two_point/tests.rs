@@ -40,7 +40,8 @@ fn gaps_of_the_table() {
         let friction = Friction::new(0.3).unwrap();
         let contact = TwoPointContact::from_gap(radius, gap, c, friction).unwrap();
         assert!((contact.half_angle().to_degrees() - degrees).abs() < 5.1e-4);
-        assert!(TwoPointContact::from_gap(radius, 2.0 * radius, c, friction).is_err());
+        let apart = TwoPointContact::from_gap(radius, 2.0 * radius, c, friction).unwrap_err();
+        assert!(apart.to_string().contains("finger gap"), "{apart}");
     }
 }
 
@@ -140,16 +141,52 @@ fn in_cone(contact: &TwoPointContact, wrench: &Wrench, slack: f64) -> bool {
     })
 }
 
+#[test]
+fn the_border_of_the_force_cone_is_stable() {
+    let (degrees, friction) = (30.0_f64, Friction::new(0.3).unwrap());
+    let contact = two(0.13, degrees, 0.3, false);
+    assert!(!contact.is_translation_stable(contact.half_angle()));
+    // Along the outermost edge of either finger there is one curvature left: that of the edge alone.
+    let curvature = 0.13 * friction.angle().sin() / contact.pressure.squared();
+    for side in [-1.0, 1.0] {
+        let heading = side * (degrees.to_radians() + friction.angle());
+        let [low, high] = contact.curvature_range(heading).unwrap();
+        assert!((low + side * curvature).abs() < 1e-9 && (high + side * curvature).abs() < 1e-9, "{low} {high}");
+        assert_eq!(contact.curvature_range(heading + side * 1e-6), None);
+    }
+}
+
+/// Where only one of several pairs of edges reaches the direction up to rounding, as on an edge itself, it counts.
+#[test]
+fn every_friction_edge_alone_is_within_the_range() {
+    for degrees in [10.0, 30.0, 50.0] {
+        let contact = two(0.13, degrees, 0.3, false);
+        for edge in contact.friction_edges() {
+            let [low, high] = contact.curvature_range(edge.force.y.atan2(edge.force.x)).unwrap();
+            let alone = edge.moment / contact.pressure.squared();
+            assert!((low - 1e-9..=high + 1e-9).contains(&alone), "{alone} is not in {low}..{high}");
+        }
+    }
+}
+
+#[test]
+fn standing_is_stable_and_spinning_is_not() {
+    let contact = two(0.13, 30.0, 0.3, false);
+    let spin = |angular| Twist { linear: Vector2::zeros(), angular };
+    assert!(contact.is_stable(&spin(0.0)));
+    assert!(!contact.is_stable(&spin(1.0)) && !contact.is_stable(&spin(-0.1)));
+}
+
 proptest! {
     #[test]
     fn stability_is_cone_membership(
         degrees in 3.0..60.0_f64, mu in 0.02..0.55_f64, heading in -1.5..1.5_f64,
-        curvature in -12.0..12.0_f64, rim in any::<bool>(),
+        curvature in -12.0..12.0_f64, speed in 0.1..10.0_f64, rim in any::<bool>(),
     ) {
         let contact = two(0.13, degrees, mu, rim);
         let twist = Twist {
-            linear: Vector2::new(heading.cos(), heading.sin()),
-            angular: curvature,
+            linear: speed * Vector2::new(heading.cos(), heading.sin()),
+            angular: speed * curvature,
         };
         let wrench = contact.pressure.wrench_of(&twist);
         let surely_in = in_cone(&contact, &wrench, -1e-7);
