@@ -109,7 +109,8 @@ pub(super) struct Hit {
     pub(super) place: Point3<f64>,
 }
 
-/// The smallest distance seen between two bodies that may not touch.
+/// The smallest distance seen between two bodies that may not touch. Between the states looked at none came nearer than half
+/// of it, resolution apart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SmallestClearance {
     /// Metres.
