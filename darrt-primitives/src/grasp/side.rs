@@ -132,7 +132,7 @@ mod tests {
                 let tips = grasp.object_from_tool * Point3::new(0.018, 0.0, 0.0);
                 let pointing = grasp.object_from_tool * Vector3::x();
                 // Between the pads is the middle of the box's narrow side.
-                assert!((tips.coords - past_axis * pointing - 0.015 * Vector3::z()).norm() < 1e-12);
+                assert!((tips.coords - pointing * past_axis - Vector3::z() * 0.015).norm() < 1e-12);
                 wrists.push(-pointing.y.round());
             }
             assert_eq!(wrists, [1.0, 1.0, -1.0, -1.0]);

@@ -91,7 +91,7 @@ fn unusable_bowls_are_refused_by_name() {
         (|b| b.options.depth = 0.07, "fingertip depth must lie in [0, 0.065], found 0.07"),
         (|b| b.options.inset = Some(0.1), "grip inset must lie in [0, 0.075], found 0.1"),
         (|b| b.options.inset = Some(-0.001), "grip inset must lie in [0, 0.075], found -0.001"),
-        (|b| b.options.max_lean = 2.0, "largest lean must lie in [0, 1.0471975511965976], found 2"),
+        (|b| b.options.max_lean = 2.0, "largest lean must lie in [0, 1.0471975511965979], found 2"),
         (
             |b| (b.options.max_lean, b.options.grid_leans) = (0.5, vec![0.9]),
             "grid lean must lie in [-0.5, 0.5], found 0.9",
