@@ -282,14 +282,15 @@ mod tests {
 
     #[test]
     fn a_grip_that_cannot_be_is_refused_by_name() {
-        let check = |change: fn(&mut Grip), thickness| {
+        type Change = fn(&mut Grip);
+        let check = |change: Change, thickness| {
             let mut grip = Grip::default();
             change(&mut grip);
             grip.check(thickness).map_err(|why| why.to_string())
         };
         assert_eq!(check(|_| (), 0.02), Ok(()));
         assert_eq!(check(|g| g.tip_ahead = 0.0, 0.02), Ok(()), "the tool may end with the fingertips");
-        let refused: [(fn(&mut Grip), f64, &str); 6] = [
+        let refused: [(Change, f64, &str); 6] = [
             (|g| g.open_gap = 0.0, 0.02, "open finger gap must be above 0, found 0"),
             (|g| g.open_gap = f64::INFINITY, 0.02, "open finger gap must be finite, found inf"),
             (|g| g.approach = -0.1, 0.02, "grasp approach must be above 0, found -0.1"),

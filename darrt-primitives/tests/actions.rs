@@ -16,8 +16,9 @@ use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::mode::{Contacts, SurfaceId, TouchReason};
 use darrt_primitives::object_space::upright;
 use darrt_primitives::push::edge_stop::RimReach;
-use darrt_primitives::testing::gantry::{Gantry, MAX_GAP_M, TIP_BEYOND_TOOL_M};
+use darrt_primitives::testing::gantry::{Gantry, MAX_GAP_M, TIP_BEYOND_TOOL_M, motion};
 use darrt_primitives::testing::table::{Table, TableState, altered_table, honest_table, object, start};
+use darrt_primitives::wish::asks_to_push;
 use nalgebra::{Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 
 /// What `act` does with the first random numbers with which it succeeds.
@@ -108,8 +109,46 @@ fn only_what_may_be_pushed_is_pushed() {
         target.translation.x += 0.1;
         let ends: Vec<_> =
             (0..8).map(|seed| push(&m, &from, id, &target, &mut stream(seed, 0, 0, Purpose::Extend))).collect();
-        assert_eq!(ends.iter().any(Result::is_ok), may);
+        assert_eq!((asks_to_push(&m, &from, id, &target), ends.iter().any(Result::is_ok)), (may, may));
         assert_eq!(ends.iter().all(|end| matches!(end, Err(Infeasible::NoContact))), !may);
+    }
+}
+
+/// Just above where the tool is while it pushes on the left table, metres.
+const HAND_WHILE_PUSHING_M: f64 = 0.738;
+
+/// An arm that follows a line of its tool only between these x, but higher up also before the first of them.
+fn near_between<const FROM_MM: i16, const TO_MM: i16>(
+    base: &[f64; 3],
+    tool: &Isometry3<f64>,
+    near: &motion::Joints,
+) -> Option<motion::Joints> {
+    let [low, high] = [FROM_MM, TO_MM].map(|mm| f64::from(mm) / 1000.0);
+    let reaches =
+        tool.translation.x <= high && (tool.translation.x >= low || tool.translation.z > HAND_WHILE_PUSHING_M);
+    reaches.then(|| motion::near(base, tool, near)).flatten()
+}
+
+#[test]
+fn a_push_needs_room_behind_the_object_and_two_centimetres_ahead() {
+    type Near = fn(&[f64; 3], &Isometry3<f64>, &motion::Joints) -> Option<motion::Joints>;
+    let reach = |near: Near| {
+        let m = altered_table(Gantry { near, ..Gantry::new().unwrap() }, |_, s| s.line_step_m = 0.005).unwrap();
+        let from = start(&m);
+        let mut target = pose(&from, object(0));
+        target.translation.x += 0.1;
+        let act = |seed| push(&m, &from, object(0), &target, &mut stream(seed, 0, 0, Purpose::Extend));
+        let ends: Vec<_> = (0..16).filter_map(|seed| act(seed).ok()).map(|way| moved(&m, &from, &way).x).collect();
+        ends.into_iter().reduce(f64::max)
+    };
+    // The tool is at x = -0.645 when the fingers touch the tin, and comes down at -0.675.
+    for (near, reached_mm) in [
+        (near_between::<-680, 0> as Near, Some(100.0)),
+        (near_between::<-680, -618>, Some(25.0)),
+        (near_between::<-680, -630>, None),
+        (near_between::<-660, 0>, None),
+    ] {
+        assert_eq!(reach(near).map(|x| (x * 1000.0).round()), reached_mm);
     }
 }
 

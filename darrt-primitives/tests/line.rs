@@ -72,3 +72,21 @@ fn a_line_ends_where_the_hand_would_stray() {
     let found = line::<330, 0>();
     assert_eq!((found.arms.len(), found.share), (24, 0.5));
 }
+
+#[test]
+fn a_line_has_as_few_steps_as_it_may_and_ends_where_the_arm_does() {
+    let m = table(Gantry::new().unwrap()).unwrap();
+    let highest = motion::LIMITS[2].upper;
+    for (wrist, up, arms, share) in [
+        (1.0, 0.05, 3, 1.0),
+        (1.0, 0.01, 1, 1.0),
+        (1.0, 0.0, 1, 1.0),
+        (highest - 0.03, 0.1, 1, 0.2),
+        (highest, 0.1, 0, 0.0),
+    ] {
+        let arm = motion::pointing_down(0.0, 0.0, wrist, 0.0);
+        let from = motion::forward(&Configuration { base: [0.0; 3], arm });
+        let found = follow(&m, &[0.0; 3], &arm, &from, &(Vector3::z() * up));
+        assert_eq!((found.arms.len(), found.share), (arms, share));
+    }
+}

@@ -103,6 +103,13 @@ mod tests {
     }
 
     #[test]
+    fn a_disc_is_gripped_in_directions_spread_over_half_a_turn() {
+        let openings = Footprint::Disc { radius: 0.02 }.openings(4);
+        let degrees: Vec<_> = openings.iter().map(|opening| opening.azimuth.to_degrees().round()).collect();
+        assert_eq!(degrees, [0.0, 45.0, 90.0, 135.0]);
+    }
+
+    #[test]
     fn a_side_as_wide_as_the_open_gap_does_not_fit() {
         let narrow = Opening { azimuth: FRAC_PI_2, width: 0.04 };
         assert_eq!(fitting(&Footprint::Box { size_x: 0.05, size_y: 0.04 }), Ok(vec![narrow]));

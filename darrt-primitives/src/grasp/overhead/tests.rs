@@ -75,13 +75,14 @@ struct Bowl {
 
 #[test]
 fn unusable_bowls_are_refused_by_name() {
-    let build = |change: fn(&mut Bowl)| {
+    type Change = fn(&mut Bowl);
+    let build = |change: Change| {
         let mut bowl = Bowl { radius: 0.075, height: 0.065, wall: 0.005, options: WallOptions::default() };
         change(&mut bowl);
         WallGrasps::new(bowl.radius, bowl.height, bowl.wall, Grip::default(), bowl.options)
     };
     assert!(build(|_| ()).is_ok());
-    let refused: [(fn(&mut Bowl), &str); 13] = [
+    let refused: [(Change, &str); 13] = [
         (|b| b.radius = f64::NAN, "bowl radius must be finite, found NaN"),
         (|b| b.height = 0.0, "bowl height must be above 0, found 0"),
         (|b| b.wall = 0.0, "wall thickness must be above 0, found 0"),
