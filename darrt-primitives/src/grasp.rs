@@ -268,4 +268,38 @@ mod tests {
             }
         }
     }
+    #[test]
+    fn the_pregrasp_lies_straight_behind_the_hand() {
+        let world_from_object = Isometry3::new(Vector3::new(0.3, -1.0, 0.8), Vector3::z() * 0.7);
+        for grasp in families().iter().flat_map(|family| family.grid()) {
+            let before = grasp.world_from_pregrasp(&world_from_object);
+            let at = grasp.world_from_tool(&world_from_object);
+            let ahead = at.translation.vector - before.translation.vector;
+            assert!((ahead - at.rotation * Vector3::x() * grasp.approach_m).norm() < 1e-12);
+            assert!(before.rotation.angle_to(&at.rotation) < 1e-7);
+        }
+    }
+
+    #[test]
+    fn a_grip_that_cannot_be_is_refused_by_name() {
+        type Change = fn(&mut Grip);
+        let check = |change: Change, thickness| {
+            let mut grip = Grip::default();
+            change(&mut grip);
+            grip.check(thickness).map_err(|why| why.to_string())
+        };
+        assert_eq!(check(|_| (), 0.02), Ok(()));
+        assert_eq!(check(|g| g.tip_ahead = 0.0, 0.02), Ok(()), "the tool may end with the fingertips");
+        let refused: [(Change, f64, &str); 6] = [
+            (|g| g.open_gap = 0.0, 0.02, "open finger gap must be above 0, found 0"),
+            (|g| g.open_gap = f64::INFINITY, 0.02, "open finger gap must be finite, found inf"),
+            (|g| g.approach = -0.1, 0.02, "grasp approach must be above 0, found -0.1"),
+            (|g| g.tip_ahead = f64::NAN, 0.02, "fingertip ahead of the tool must be finite, found NaN"),
+            (|_| (), 0.0, "held thickness must be above 0, found 0"),
+            (|_| (), 0.05, "held thickness must be below 0.05, found 0.05"),
+        ];
+        for (change, thickness, why) in refused {
+            assert_eq!(check(change, thickness), Err(why.to_owned()));
+        }
+    }
 }

@@ -8,9 +8,17 @@ use darrt_core::random::{Purpose, Stream, stream};
 use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
 use darrt_primitives::action::transfer::{transfer, transfer_by_base};
 use darrt_primitives::action::{label, pick::pick, place::place, push::push};
+use darrt_primitives::grasp::footprint::Footprint;
+use darrt_primitives::grasp::overhead::{OverheadGrasps, WallGrasps, WallOptions};
+use darrt_primitives::grasp::rim::{RimGrasps, RimOptions};
+use darrt_primitives::grasp::{GraspFamily, Grip};
+use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::mode::{Contacts, SurfaceId, TouchReason};
 use darrt_primitives::object_space::upright;
-use darrt_primitives::testing::table::{Table, TableState, honest_table, object, start};
+use darrt_primitives::push::edge_stop::RimReach;
+use darrt_primitives::testing::gantry::{Gantry, MAX_GAP_M, TIP_BEYOND_TOOL_M, motion};
+use darrt_primitives::testing::table::{Table, TableState, altered_table, honest_table, object, start};
+use darrt_primitives::wish::asks_to_push;
 use nalgebra::{Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 
 /// What `act` does with the first random numbers with which it succeeds.
@@ -91,6 +99,59 @@ fn a_push_off_the_table_stops_at_all_the_distances_that_are_asked_for() {
     assert!(most - least > 0.01, "{depths:?}");
 }
 
+#[test]
+fn only_what_may_be_pushed_is_pushed() {
+    // The red tin is round, but it must not be pushed; the box is not round.
+    let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].1.is_pushable = false).unwrap();
+    let from = start(&m);
+    for (id, may) in [(object(0), false), (object(1), true), (object(2), false)] {
+        let mut target = pose(&from, id);
+        target.translation.x += 0.1;
+        let ends: Vec<_> =
+            (0..8).map(|seed| push(&m, &from, id, &target, &mut stream(seed, 0, 0, Purpose::Extend))).collect();
+        assert_eq!((asks_to_push(&m, &from, id, &target), ends.iter().any(Result::is_ok)), (may, may));
+        assert_eq!(ends.iter().all(|end| matches!(end, Err(Infeasible::NoContact))), !may);
+    }
+}
+
+/// Just above where the tool is while it pushes on the left table, metres.
+const HAND_WHILE_PUSHING_M: f64 = 0.738;
+
+/// An arm that follows a line of its tool only between these x, but higher up also before the first of them.
+fn near_between<const FROM_MM: i16, const TO_MM: i16>(
+    base: &[f64; 3],
+    tool: &Isometry3<f64>,
+    near: &motion::Joints,
+) -> Option<motion::Joints> {
+    let [low, high] = [FROM_MM, TO_MM].map(|mm| f64::from(mm) / 1000.0);
+    let reaches =
+        tool.translation.x <= high && (tool.translation.x >= low || tool.translation.z > HAND_WHILE_PUSHING_M);
+    reaches.then(|| motion::near(base, tool, near)).flatten()
+}
+
+#[test]
+fn a_push_needs_room_behind_the_object_and_two_centimetres_ahead() {
+    type Near = fn(&[f64; 3], &Isometry3<f64>, &motion::Joints) -> Option<motion::Joints>;
+    let reach = |near: Near| {
+        let m = altered_table(Gantry { near, ..Gantry::new().unwrap() }, |_, s| s.line_step_m = 0.005).unwrap();
+        let from = start(&m);
+        let mut target = pose(&from, object(0));
+        target.translation.x += 0.1;
+        let act = |seed| push(&m, &from, object(0), &target, &mut stream(seed, 0, 0, Purpose::Extend));
+        let ends: Vec<_> = (0..16).filter_map(|seed| act(seed).ok()).map(|way| moved(&m, &from, &way).x).collect();
+        ends.into_iter().reduce(f64::max)
+    };
+    // The tool is at x = -0.645 when the fingers touch the tin, and comes down at -0.675.
+    for (near, reached_mm) in [
+        (near_between::<-680, 0> as Near, Some(100.0)),
+        (near_between::<-680, -618>, Some(25.0)),
+        (near_between::<-680, -630>, None),
+        (near_between::<-660, 0>, None),
+    ] {
+        assert_eq!(reach(near).map(|x| (x * 1000.0).round()), reached_mm);
+    }
+}
+
 /// The table with `id` just lifted.
 fn lifted(m: &Table, id: ObjectId) -> TableState {
     let from = start(m);
@@ -109,6 +170,11 @@ fn assert_at(found: &Isometry3<f64>, wanted: &Isometry3<f64>, is_round: bool) {
     assert!(off < 1e-6 && tilt < 1e-6 && turn < 1e-6, "{found} is not {wanted}");
 }
 
+/// What may touch while the fingers close around `id` on the left table, or open from it.
+fn on_the_left_table(id: ObjectId) -> Contacts {
+    Contacts { fingers: Some((id, TouchReason::Grasp)), support: Some((id, SurfaceId::new(0))) }
+}
+
 #[test]
 fn a_pick_lifts_the_object_straight_up() {
     let m = honest_table().unwrap();
@@ -118,6 +184,7 @@ fn a_pick_lifts_the_object_straight_up() {
         let [.., approach, lift] = &instances[..] else { panic!("too few instances") };
         assert_eq!((approach.label, approach.object), (label::STRAIGHT_LINE_ARM_TRANSIT, Some(id)));
         assert_eq!((lift.label, lift.object, lift.reversible), (label::PICK, Some(id), false));
+        assert_eq!((approach.contacts, lift.contacts), (Contacts::default(), on_the_left_table(id)));
         let after = end(&m, &from, &instances);
         assert_eq!(after.mode.held().map(|held| held.object), Some(id));
         let up = pose(&after, id).translation.vector - pose(&from, id).translation.vector;
@@ -144,9 +211,11 @@ fn a_place_sets_the_object_down_and_lets_go() {
         let z = 0.7 + m.movable(id).unwrap().half_height_m;
         let target = upright(Vector3::new(-0.3, -0.05, z + 0.01), 0.5);
         let instances = first(|rng| place(&m, &from, &target, rng));
-        let [.., down, back] = &instances[..] else { panic!("too few instances") };
+        let [carried @ .., down, back] = &instances[..] else { panic!("too few instances") };
         assert_eq!((down.label, down.object, down.reversible), (label::PLACE, Some(id), false));
-        assert_eq!(back.contacts.fingers, Some((id, TouchReason::Retreat)));
+        assert!(carried.iter().all(|instance| instance.contacts == Contacts::default()));
+        assert_eq!(down.contacts, on_the_left_table(id));
+        assert_eq!(back.contacts, Contacts { fingers: Some((id, TouchReason::Retreat)), support: None });
         let after = end(&m, &from, &instances);
         assert_at(&pose(&after, id), &upright(Vector3::new(-0.3, -0.05, z), 0.5), id != object(2));
         assert_eq!((after.mode.held(), after.mode.engaged()), (None, None));
@@ -154,6 +223,111 @@ fn a_place_sets_the_object_down_and_lets_go() {
         // The fingers open by the settings' 0.01 m.
         assert!((after.mode.gap_m() - from.mode.gap_m() - 0.01).abs() < 1e-12);
     }
+}
+
+/// The way of the hand in `instance`, in its own frame: x is where it points.
+fn way_of_the_hand(m: &Table, from: &TableState, instance: &Instance<Table>) -> Vector3<f64> {
+    let at = |s| m.manipulator().world_from_tool(&instance.at(m, s, from).robot);
+    let way = at(0.0).inverse() * at(1.0);
+    assert!(way.rotation.angle() < 1e-6, "{way}");
+    way.translation.vector
+}
+
+#[test]
+fn the_hand_goes_in_and_out_along_its_own_axis() {
+    // Where no direction is named, things are set down from above as well.
+    let unnamed = altered_table(Gantry::new().unwrap(), |_, settings| settings.place.approach_directions.clear());
+    for m in [honest_table().unwrap(), unnamed.unwrap()] {
+        let goes = |from: &TableState, instance: &Instance<Table>, ahead: f64| {
+            let way = way_of_the_hand(&m, from, instance);
+            assert!((way - Vector3::x() * ahead).norm() < 1e-6, "{way}");
+        };
+        for id in (0..3).map(object) {
+            let from = start(&m);
+            let picked = first(|rng| pick(&m, &from, id, rng));
+            let [there @ .., approach, _] = &picked[..] else { panic!("too few instances") };
+            goes(&end(&m, &from, there), approach, 0.1);
+
+            let from = end(&m, &from, &picked);
+            let target = upright(Vector3::new(-0.3, -0.05, 0.7 + m.movable(id).unwrap().half_height_m), 0.5);
+            let placed = first(|rng| place(&m, &from, &target, rng));
+            let [there @ .., down, back] = &placed[..] else { panic!("too few instances") };
+            let above = end(&m, &from, there);
+            goes(&above, down, 0.1);
+            goes(&down.at(&m, 1.0, &above), back, -0.1);
+        }
+    }
+}
+
+#[test]
+fn a_lift_may_end_where_the_arm_does_if_that_is_high_enough() {
+    // The arm lifts a tin by less than 0.9 m.
+    for (least, may) in [(0.7, true), (1.0, false)] {
+        let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].1.lift_m = [least, 2.0]).unwrap();
+        let from = start(&m);
+        for seed in 0..8 {
+            match pick(&m, &from, object(0), &mut stream(seed, 0, 0, Purpose::Extend)) {
+                Ok(picked) => {
+                    let up = pose(&end(&m, &from, &picked), object(0)).translation.z - 0.74;
+                    assert!(may && (least..0.9).contains(&up), "{up}");
+                }
+                Err(why) => assert!(!may && why == Infeasible::Unreachable, "{why:?}"),
+            }
+        }
+    }
+}
+
+/// The table whose red tin can be grasped in this way only.
+fn grasped_by(grasps: impl GraspFamily + 'static) -> Table {
+    altered_table(Gantry::new().unwrap(), |objects, _| {
+        objects[0].1.grasps = vec![Box::new(grasps)];
+        objects[0].1.rim = RimReach { insertion: 0.02, clearance: 0.005, ..RimReach::default() };
+    })
+    .unwrap()
+}
+
+fn grip(open_gap: f64) -> Grip {
+    Grip { open_gap, tip_ahead: TIP_BEYOND_TOOL_M, approach: 0.1 }
+}
+
+#[test]
+fn the_fingers_open_no_farther_than_they_can() {
+    let m = grasped_by(OverheadGrasps::new(Footprint::Disc { radius: 0.04 }, 0.08, 0.03, grip(0.2)).unwrap());
+    let from = start(&m);
+    let picked = first(|rng| pick(&m, &from, object(0), rng));
+    let [before @ .., _] = &picked[..] else { panic!("too few instances") };
+    assert_eq!(end(&m, &from, before).mode.gap_m(), MAX_GAP_M);
+}
+
+#[test]
+fn a_rim_is_gripped_only_where_it_sticks_out_over_the_edge() {
+    let options = RimOptions { insertion: 0.02, max_tilt: 0.0, grid_tilts: vec![0.0], ..RimOptions::default() };
+    let m = grasped_by(RimGrasps::new(0.04, 0.08, grip(0.095), options).unwrap());
+    let mut from = start(&m);
+    let picks = |from: &TableState| -> Vec<_> {
+        (0..16).map(|seed| pick(&m, from, object(0), &mut stream(seed, 0, 0, Purpose::Extend))).collect()
+    };
+    assert!(picks(&from).iter().all(|end| matches!(end, Err(Infeasible::NoGrasp))));
+
+    // 0.01 m inside the left edge, and turned: the azimuths of the grasps are about the tin's own axes.
+    from.objects[0] = upright(Vector3::new(-0.89, -0.3, 0.74), 2.0);
+    let picked: Vec<_> = picks(&from).into_iter().flatten().collect();
+    assert!(!picked.is_empty());
+    for instances in picked {
+        let tool = m.manipulator().world_from_tool(&end(&m, &from, &instances).robot);
+        // The fingertips, 0.02 m from the axis, are 0.005 m beside the table: 0.02 cos - 0.01 >= 0.005.
+        assert!((tool.rotation * Vector3::x()).x >= 0.75 - 1e-6, "{tool}");
+    }
+}
+
+#[test]
+fn one_finger_stands_inside_the_bowl_that_is_picked_by_its_wall() {
+    let m = grasped_by(WallGrasps::new(0.04, 0.08, 0.005, grip(0.05), WallOptions::default()).unwrap());
+    let from = start(&m);
+    let picked = first(|rng| pick(&m, &from, object(0), rng));
+    let [.., approach, lift] = &picked[..] else { panic!("too few instances") };
+    assert_eq!(approach.contacts, Contacts { fingers: Some((object(0), TouchReason::Grasp)), support: None });
+    assert_eq!(lift.contacts, on_the_left_table(object(0)));
 }
 
 #[test]

@@ -93,3 +93,38 @@ pub(super) fn sample_opening(footprint: &Footprint, fitting: &[Opening], rng: &m
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fitting(footprint: &Footprint) -> Result<Vec<Opening>, String> {
+        fitting_openings(footprint, &Grip::default(), GRID_OPENINGS).map_err(|why| why.to_string())
+    }
+
+    #[test]
+    fn a_disc_is_gripped_in_directions_spread_over_half_a_turn() {
+        let openings = Footprint::Disc { radius: 0.02 }.openings(4);
+        let degrees: Vec<_> = openings.iter().map(|opening| opening.azimuth.to_degrees().round()).collect();
+        assert_eq!(degrees, [0.0, 45.0, 90.0, 135.0]);
+    }
+
+    #[test]
+    fn a_side_as_wide_as_the_open_gap_does_not_fit() {
+        let narrow = Opening { azimuth: FRAC_PI_2, width: 0.04 };
+        assert_eq!(fitting(&Footprint::Box { size_x: 0.05, size_y: 0.04 }), Ok(vec![narrow]));
+    }
+
+    #[test]
+    fn outlines_that_cannot_be_gripped_are_refused_by_name() {
+        for (footprint, why) in [
+            (Footprint::Disc { radius: 0.0 }, "object radius must be above 0, found 0"),
+            (Footprint::Disc { radius: 0.03 }, "held thickness must be below 0.05, found 0.06"),
+            (Footprint::Box { size_x: f64::INFINITY, size_y: 0.04 }, "object size x must be finite, found inf"),
+            (Footprint::Box { size_x: 0.04, size_y: f64::INFINITY }, "object size y must be finite, found inf"),
+            (Footprint::Box { size_x: 0.08, size_y: 0.06 }, "held thickness must be below 0.05, found 0.06"),
+        ] {
+            assert_eq!(fitting(&footprint), Err(why.to_owned()));
+        }
+    }
+}

@@ -123,6 +123,23 @@ mod tests {
     }
 
     #[test]
+    fn the_fingertips_end_beyond_the_axis_or_before_it_from_either_side() {
+        let footprint = Footprint::Box { size_x: 0.05, size_y: 0.2 };
+        for past_axis in [0.01, -0.02] {
+            let grid = SideGrasps::new(footprint, 0.08, past_axis, 0.015, wide()).unwrap().grid();
+            let mut wrists = Vec::new();
+            for grasp in grid {
+                let tips = grasp.object_from_tool * Point3::new(0.018, 0.0, 0.0);
+                let pointing = grasp.object_from_tool * Vector3::x();
+                // Between the pads is the middle of the box's narrow side.
+                assert!((tips.coords - pointing * past_axis - Vector3::z() * 0.015).norm() < 1e-12);
+                wrists.push(-pointing.y.round());
+            }
+            assert_eq!(wrists, [1.0, 1.0, -1.0, -1.0]);
+        }
+    }
+
+    #[test]
     fn unusable_objects_are_refused() {
         let cup = |radius, height, past, offset| {
             SideGrasps::new(Footprint::Disc { radius }, height, past, offset, wide()).is_ok()

@@ -60,6 +60,17 @@ pub fn object(index: usize) -> ObjectId {
 /// # Errors
 /// [`TableError`] for a robot whose limits, weights or links cannot be used.
 pub fn table(robot: Gantry) -> Result<Table, TableError> {
+    altered_table(robot, |_, _| ())
+}
+
+/// The same after `change` of the objects and of the settings.
+///
+/// # Errors
+/// As [`table`].
+pub fn altered_table(
+    robot: Gantry,
+    change: impl FnOnce(&mut [(ObjectSpace, Movable)], &mut ActionSettings<motion::Joints>),
+) -> Result<Table, TableError> {
     let surface =
         |name: &str, x| SupportSurface::rectangle(name, Point2::new(x, 0.0), Vector2::new(0.8, 1.2), 0.0, HEIGHT_M);
     let surfaces = [surface("left table", -0.5)?, surface("right table", 0.5)?];
@@ -68,10 +79,12 @@ pub fn table(robot: Gantry) -> Result<Table, TableError> {
     let [x, y, z] = BOX_M;
     let cuboid = Shape::cuboid(Vector3::new(x, y, z) / 2.0)?;
     let footprint = Footprint::Box { size_x: x, size_y: y };
-    let objects = vec![tin("red tin")?, tin("blue tin")?, movable("box", cuboid, footprint, &surfaces)?];
+    let mut objects = vec![tin("red tin")?, tin("blue tin")?, movable("box", cuboid, footprint, &surfaces)?];
     let space = ArmSpace::new([-2.0; 2], [2.0; 2], robot.limits(), robot.joint_weights_m())?;
     let supports = surfaces.iter().map(|surface| Support { surface: surface.clone(), bodies: Vec::new() });
-    Ok(Tabletop::new(Arc::new(robot), space, objects, supports.collect(), &[], settings())?)
+    let mut settings = settings();
+    change(&mut objects, &mut settings);
+    Ok(Tabletop::new(Arc::new(robot), space, objects, supports.collect(), &[], settings)?)
 }
 
 /// The honest gantry at the tables.

@@ -65,22 +65,57 @@ fn a_box_is_gripped_across_its_narrow_side() {
     assert!(block(0.05, -1.0).is_err());
 }
 
+/// What a bowl is made of.
+struct Bowl {
+    radius: f64,
+    height: f64,
+    wall: f64,
+    options: WallOptions,
+}
+
 #[test]
-fn unusable_bowls_are_refused() {
-    let build = |radius, height, wall, change: fn(&mut WallOptions)| {
-        let mut options = WallOptions::default();
-        change(&mut options);
-        WallGrasps::new(radius, height, wall, Grip::default(), options).is_ok()
+fn unusable_bowls_are_refused_by_name() {
+    type Change = fn(&mut Bowl);
+    let build = |change: Change| {
+        let mut bowl = Bowl { radius: 0.075, height: 0.065, wall: 0.005, options: WallOptions::default() };
+        change(&mut bowl);
+        WallGrasps::new(bowl.radius, bowl.height, bowl.wall, Grip::default(), bowl.options)
     };
-    assert!(build(0.075, 0.065, 0.005, |_| ()));
-    assert!(!build(0.075, 0.065, 0.06, |_| ()));
-    assert!(!build(0.075, 0.02, 0.005, |_| ()));
-    assert!(!build(f64::NAN, 0.065, 0.005, |_| ()));
-    assert!(!build(0.075, 0.065, 0.005, |o| o.inset = Some(0.1)));
-    assert!(!build(0.075, 0.065, 0.005, |o| o.max_lean = 2.0));
-    assert!(!build(0.075, 0.065, 0.005, |o| o.grid_leans.push(0.9)));
-    assert!(!build(0.075, 0.065, 0.005, |o| o.grid_leans.clear()));
-    assert!(!build(0.075, 0.065, 0.005, |o| o.grid_azimuths = 0));
+    assert!(build(|_| ()).is_ok());
+    let refused: [(Change, &str); 13] = [
+        (|b| b.radius = f64::NAN, "bowl radius must be finite, found NaN"),
+        (|b| b.height = 0.0, "bowl height must be above 0, found 0"),
+        (|b| b.wall = 0.0, "wall thickness must be above 0, found 0"),
+        (|b| (b.radius, b.wall) = (0.04, 0.04), "wall thickness must be below 0.04, found 0.04"),
+        (|b| b.wall = 0.06, "held thickness must be below 0.05, found 0.06"),
+        (|b| b.options.depth = 0.0, "fingertip depth must be above 0, found 0"),
+        (|b| b.options.depth = 0.07, "fingertip depth must lie in [0, 0.065], found 0.07"),
+        (|b| b.options.inset = Some(0.1), "grip inset must lie in [0, 0.075], found 0.1"),
+        (|b| b.options.inset = Some(-0.001), "grip inset must lie in [0, 0.075], found -0.001"),
+        (|b| b.options.max_lean = 2.0, "largest lean must lie in [0, 1.0471975511965979], found 2"),
+        (
+            |b| (b.options.max_lean, b.options.grid_leans) = (0.5, vec![0.9]),
+            "grid lean must lie in [-0.5, 0.5], found 0.9",
+        ),
+        (|b| b.options.grid_leans.clear(), "lean grid must not be empty"),
+        (|b| b.options.grid_azimuths = 0, "azimuth grid must not be empty"),
+    ];
+    for (change, why) in refused {
+        assert_eq!(build(change).map_err(|why| why.to_string()), Err(why.to_owned()));
+    }
+}
+
+#[test]
+fn small_things_that_cannot_be_gripped_from_above_are_refused_by_name() {
+    let build = |height, depth| OverheadGrasps::new(Footprint::Disc { radius: 0.02 }, height, depth, Grip::default());
+    assert!(build(0.08, 0.08).is_ok(), "the fingertips may reach down to the bottom");
+    for (height, depth, why) in [
+        (f64::INFINITY, 0.03, "object height must be finite, found inf"),
+        (0.08, 0.0, "fingertip depth must be above 0, found 0"),
+        (0.08, 0.09, "fingertip depth must lie in [0, 0.08], found 0.09"),
+    ] {
+        assert_eq!(build(height, depth).map_err(|why| why.to_string()), Err(why.to_owned()));
+    }
 }
 
 #[test]
@@ -104,6 +139,19 @@ proptest! {
             // Inner and outer face of the wall.
             let flat = pad.coords.xy().norm();
             prop_assert!((flat - 0.070).abs() < 1e-9 || (flat - 0.075).abs() < 1e-9);
+        }
+    }
+    #[test]
+    fn the_hand_leans_along_the_wall_and_its_fingers_can_be_exchanged(
+        azimuth in -3.2..3.2_f64, lean in -0.5..0.5_f64,
+    ) {
+        let (outward, counter_clockwise) = radial_and_tangent(azimuth);
+        for (flipped, sign) in [(false, -1.0), (true, 1.0)] {
+            let hand = bowl(WallOptions::default()).grasp(azimuth, lean, flipped).object_from_tool.rotation;
+            let pointing = hand * Vector3::x();
+            prop_assert!((pointing.dot(&counter_clockwise) - lean.sin()).abs() < 1e-12);
+            prop_assert!((pointing.z + lean.cos()).abs() < 1e-12);
+            prop_assert!((hand * Vector3::y() - sign * outward).norm() < 1e-12);
         }
     }
 }

@@ -210,13 +210,70 @@ fn a_notch_in_the_table_must_be_wide_enough() {
 }
 
 #[test]
+fn a_post_beside_a_fingertip_is_as_far_as_it_looks_and_one_that_meets_it_is_in_the_way() {
+    // The fingertip is 0.11 to 0.14 along the azimuth and 0.02 wide, the post 0.002 square.
+    let at = [[0.125, 0.006], [0.125, 0.0], [0.112, 0.0], [0.138, 0.0]];
+    let half_covered = [[0.125, 0.01], [0.11, 0.004], [0.14, 0.004]];
+    let beside = [[0.125, 0.016], [0.112, 0.016], [0.138, 0.016], [0.104, 0.002], [0.146, 0.002]];
+    let distances = [(&at[..], None), (&half_covered[..], None), (&beside[..], Some(0.005))];
+    let center = Point2::new(0.3, -0.2);
+    for (azimuth, mirror) in [0.0, 0.7, 2.5, -2.0_f64].into_iter().flat_map(|a| [(a, 1.0), (a, -1.0)]) {
+        let outward = Vector2::new(azimuth.cos(), azimuth.sin());
+        let aside = mirror * Vector2::new(-outward.y, outward.x);
+        for (posts, expected) in distances {
+            for [along, across] in posts {
+                let corner = |[u, v]: [f64; 2]| {
+                    let p = center + (along + 0.001 * u) * outward + (across + 0.001 * v) * aside;
+                    (p.x, p.y)
+                };
+                let post = surface(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner));
+                let found = fingertip_edge_distance(&post, &center, 0.14, azimuth, 0.03, 0.01);
+                let off = found.unwrap_or(-1.0) - expected.unwrap_or(-1.0);
+                assert!(off.abs() < 1e-9, "{azimuth} {along} {across}: {found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn segments_cross_where_each_has_its_ends_on_both_sides_of_the_other() {
+    let p = |x, y| Point2::new(x, y);
+    let (a, b) = (p(1.0, 2.0), p(4.0, 3.5));
+    for (c, d, expected) in [
+        (p(2.0, 1.0), p(3.0, 6.0), true),
+        // The line through the one meets the other, beyond an end or beside it.
+        (p(5.0, 1.0), p(6.0, 8.0), false),
+        (p(2.0, 4.0), p(2.5, 6.0), false),
+        (p(2.0, 1.0), p(2.1, 1.5), false),
+        (p(1.0, 3.0), p(4.0, 4.5), false),
+        // They only touch.
+        (p(2.0, 2.5), p(2.0, 6.0), false),
+        (p(0.0, 1.0), p(2.0, 3.0), false),
+    ] {
+        for [a, b, c, d] in [[a, b, c, d], [b, a, c, d], [a, b, d, c], [c, d, a, b], [d, c, b, a]] {
+            assert_eq!(segments_cross(&a, &b, &c, &d), expected, "{a} {b} {c} {d}");
+        }
+    }
+}
+
+#[test]
+fn a_point_is_as_far_from_a_segment_as_from_its_nearest_point() {
+    let (a, b) = (Point2::new(1.0, 2.0), Point2::new(4.0, 2.0));
+    for (x, y, expected) in [(3.0, 2.5, 0.5), (2.0, 1.0, 1.0), (-2.0, 6.0, 5.0), (7.0, -2.0, 5.0), (1.5, 2.0, 0.0)] {
+        assert_eq!(point_segment_distance(&Point2::new(x, y), &a, &b), expected);
+        assert_eq!(point_segment_distance(&Point2::new(x, y), &b, &a), expected);
+    }
+    assert_eq!(point_segment_distance(&Point2::new(4.0, 6.0), &a, &a), 5.0);
+}
+
+#[test]
 fn force_closure_and_holding_force() {
     for (mu, degrees) in [(0.5, 26.6), (0.8, 38.7)] {
         let friction = Friction::new(mu).unwrap();
         let hold = |tilt: f64| rim_hold(tilt.to_radians(), friction, 0.5, 0.125, 0.03).unwrap();
         assert!((hold(0.0).tilt_limit.to_degrees() - degrees).abs() < 0.05);
         assert!(hold(degrees - 0.2).force_closure && hold(-degrees + 0.2).force_closure);
-        assert!(!hold(degrees + 0.2).force_closure);
+        assert!(!hold(degrees + 0.2).force_closure && !hold(-degrees - 0.2).force_closure);
         assert!((hold(0.0).moment - 0.61).abs() < 5e-3);
         assert!((hold(0.0).grip_force - 41.0).abs() < 0.5);
     }
