@@ -27,11 +27,15 @@ pub struct ExtendOptions {
     pub spacing_m: f64,
     /// At most this many primitives in one PATH (the authors' software used 100).
     pub max_depth: usize,
+    /// Motions are taken as free if their ends are, and judged as a whole when a plan needs them
+    /// ([`settle`](crate::settle::settle)); only their ends become nodes. Plans are then repaired while they are made
+    /// shorter, so [`Strategy::shorten`](crate::search::Strategy::shorten) should allow some extensions.
+    pub defer: bool,
 }
 
 impl Default for ExtendOptions {
     fn default() -> Self {
-        Self { spacing_m: 0.1, max_depth: 20 }
+        Self { spacing_m: 0.1, max_depth: 20, defer: false }
     }
 }
 
@@ -133,6 +137,16 @@ impl<D: Domain> Extender<'_, D> {
                 break;
             };
             let (primitive, mut instance) = (*primitive, Arc::clone(instance));
+            if options.defer
+                && let Some(end) = e.states.get(index + 1)
+            {
+                if let Err(blame) = problem.validity().check(m, end, &instance.contacts) {
+                    blocked = Some((index, blame));
+                    break;
+                }
+                reached.push(Reached { state: end.clone(), instance, t: 1.0, primitive });
+                continue;
+            }
             let mut free = prefixes.of(index);
             if free.blame.is_some()
                 && let Some(r) = reroute.filter(|r| r.is_free_to_turn(&instance))

@@ -36,6 +36,7 @@ pub mod random;
 pub mod reroute;
 pub mod sample;
 pub mod search;
+pub mod settle;
 pub mod shorten;
 pub mod solve;
 pub mod space;

@@ -11,6 +11,7 @@ use crate::problem::Problem;
 use crate::random::{Purpose, stream};
 use crate::reroute::Reroute;
 use crate::sample::Sampler;
+use crate::settle::{Unsettled, settle};
 use crate::shorten::{ShortenOptions, shorten};
 use crate::state::State;
 use crate::tree::{Edge, NodeId, Tree};
@@ -68,8 +69,17 @@ pub struct Step<D: Domain> {
     pub solution: Option<Solution<D>>,
     /// Set when a state satisfied the goal but the verifier refused.
     pub refusal: Option<Refusal>,
+    /// Set when a state satisfied the goal but a motion to it, taken as free before, is blocked: the states that were
+    /// taken back, and what is in the way.
+    pub withdrawn: Option<(usize, Blame)>,
     /// Set when the tree is full, or when the verifier was cancelled.
     pub stop: Option<Stop>,
+}
+
+/// Why a state in the goal is no solution.
+enum Unproved<D: Domain> {
+    Refused(Refusal),
+    Unsettled(Unsettled<D>),
 }
 
 impl<'p, D: Domain> Darrt<'p, D> {
@@ -121,20 +131,24 @@ impl<'p, D: Domain> Darrt<'p, D> {
         self.tree.penalise(t, self.strategy.try_penalty_m);
         let step = self.absorb(t, extension);
         self.accounts.count(&buckets, step.added, is_met, step.blame.as_ref());
+        if let Some((removed, blame)) = &step.withdrawn {
+            self.accounts.withdraw(*removed, blame);
+        }
         step
     }
 
     /// The empty plan, if the start lies in the goal and the verifier agrees.
     pub fn prove_start(&mut self) -> Option<Result<Solution<D>, Refusal>> {
         let is_goal = self.problem.goal().is_satisfied(self.problem.domain(), self.problem.start());
-        let proof = is_goal.then(|| self.prove(Tree::<D>::ROOT))?;
+        let proof = is_goal.then(|| self.judge(Plan::new(self.problem.start().clone(), Vec::new())))?;
         self.accounts.refused += u64::from(proof.is_err());
         Some(proof)
     }
 
     /// `V <- V + {c_1 ... c_l}`, each tested against the goal.
     fn absorb(&mut self, from: NodeId, extension: Extension<D>) -> Step<D> {
-        let mut step = Step { added: 0, blame: extension.blame, solution: None, refusal: None, stop: None };
+        let mut step =
+            Step { added: 0, blame: extension.blame, solution: None, refusal: None, withdrawn: None, stop: None };
         let mut parent = from;
         for reached in extension.reached {
             self.note_distance_to_goal(&reached.state);
@@ -149,11 +163,11 @@ impl<'p, D: Domain> Darrt<'p, D> {
             step.added += 1;
             if is_goal {
                 match self.prove(id) {
-                    Ok(solution) => {
-                        step.solution = Some(solution);
-                        return step;
+                    Ok(solution) => step.solution = Some(solution),
+                    Err(Unproved::Unsettled(Unsettled::Blocked(instance, blame))) => {
+                        step.withdrawn = Some((self.tree.prune(id, &instance), blame));
                     }
-                    Err(refusal) => {
+                    Err(unproved) => {
                         // A refused state must not stay: nothing would be nearer to the goal, and every
                         // extension towards the goal would begin and end there.
                         self.tree.remove_last();
@@ -161,32 +175,39 @@ impl<'p, D: Domain> Darrt<'p, D> {
                         // It may have given up only because nobody waits for its answer any more.
                         if self.interrupt.stop() == Some(Stop::Cancelled) {
                             step.stop = Some(Stop::Cancelled);
-                            return step;
+                        } else if let Unproved::Refused(refusal) = unproved {
+                            self.accounts.refused += 1;
+                            step.refusal = Some(refusal);
                         }
-                        self.accounts.refused += 1;
-                        step.refusal = Some(refusal);
-                        return step;
                     }
                 }
+                return step;
             }
         }
         step
     }
 
-    fn prove(&self, node: NodeId) -> Result<Solution<D>, Refusal> {
+    /// A shorter plan if one can be had, else the plan to this node.
+    fn prove(&self, node: NodeId) -> Result<Solution<D>, Unproved<D>> {
         let lost = || Refusal { step: None, at: 0.0, reason: "the tree has no such node".to_owned() };
-        let plan = Plan::to_node(&self.tree, node).ok_or_else(lost)?;
-        let p = self.problem;
+        let plan = Plan::to_node(&self.tree, node).ok_or_else(|| Unproved::Refused(lost()))?;
         let rng = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Shorten);
+        let extender = self.extender();
         // A shorter plan that the verifier refuses is no reason to give up the longer one.
-        if let Some(short) = shorten(&self.extender(), &plan, self.strategy.shorten, rng)
-            && let Ok(solution) = Solution::prove(p.domain(), p.start(), p.goal(), p.verifier(), short)
+        if let Some(short) = shorten(&extender, &plan, self.strategy.shorten, rng)
+            && let Ok(solution) = self.judge(short)
         {
             return Ok(solution);
         }
+        let steps = settle(&extender, plan.start(), plan.steps().iter().cloned(), rng).map_err(Unproved::Unsettled)?;
+        self.judge(Plan::new(plan.start().clone(), steps)).map_err(Unproved::Refused)
+    }
+
+    fn judge(&self, plan: Plan<D>) -> Result<Solution<D>, Refusal> {
         if self.interrupt.stop() == Some(Stop::Cancelled) {
             return Err(Refusal { step: None, at: 0.0, reason: "cancelled".to_owned() });
         }
+        let p = self.problem;
         Solution::prove(p.domain(), p.start(), p.goal(), p.verifier(), plan)
     }
 

@@ -2,16 +2,19 @@
 //!
 //! A tree wanders: it pushes here, then there, then back. Every placement of the objects on the way of a found plan is a
 //! target that can be reached, so from each a later one is looked for that one extension reaches. Where none is found the
-//! old steps stay. The verifier judges the whole.
+//! old steps stay. The motions of the shortest plan are then judged if the search took them as free, and one that is not is
+//! passed by other leaps. The verifier judges the whole.
 
 use std::sync::Arc;
 
 use rand::Rng;
 
+use crate::budget::Stop;
 use crate::domain::Domain;
 use crate::extend::{Extender, Reached};
 use crate::partial::PartialState;
 use crate::plan::{Plan, Step};
+use crate::settle::settle;
 use crate::state::{ObjectId, State};
 
 /// How often one extension is drawn before the next nearer target is tried.
@@ -27,7 +30,8 @@ pub struct ShortenOptions {
     pub extensions: usize,
 }
 
-/// A plan to the goal with fewer steps than `plan`, if one was found before the extender is interrupted. Not verified.
+/// A plan to the goal with fewer steps than `plan`, or with as many whose motions have been judged if the search put that
+/// off, if one was found before the extender is interrupted. Not verified.
 pub fn shorten<D: Domain>(
     extender: &Extender<'_, D>,
     plan: &Plan<D>,
@@ -47,7 +51,16 @@ pub fn shorten<D: Domain>(
             fruitless += 1;
         }
     }
-    best
+    if !extender.options.defer {
+        return best;
+    }
+    let mut left = options.extensions;
+    while left > 0 && extender.interrupt.stop() != Some(Stop::Cancelled) {
+        if let Some(steps) = mend(extender, best.as_ref().unwrap_or(plan), &mut left, rng) {
+            return Some(Plan::new(plan.start().clone(), steps));
+        }
+    }
+    None
 }
 
 /// Where the objects stand after a step that moves one.
@@ -98,8 +111,9 @@ fn retrace<D: Domain>(extender: &Extender<'_, D>, old: &Plan<D>, left: &mut usiz
     let mut anchor = Anchor { kept: 0, step: 0, done: 0 };
     loop {
         let ahead = placements.get(done..).unwrap_or_default();
-        if let Some(leap) = leap(extender, &here, ahead, left, rng) {
-            append(&mut steps, &mut here, leap.reached);
+        if let Some(leap) = leap(extender, &here, ahead, left, &mut |_, steps, _| Some(steps), rng) {
+            steps.extend(leap.steps);
+            here = leap.end;
             match leap.passed {
                 Some(passed) => done += passed,
                 None => return steps,
@@ -120,9 +134,54 @@ fn retrace<D: Domain>(extender: &Extender<'_, D>, old: &Plan<D>, left: &mut usiz
     }
 }
 
+/// Judges the old plan from placement to placement. Behind a motion that is blocked it goes on in leaps that are judged.
+fn mend<D: Domain>(
+    extender: &Extender<'_, D>,
+    old: &Plan<D>,
+    left: &mut usize,
+    rng: &mut dyn Rng,
+) -> Option<Vec<Step<D>>> {
+    let m = extender.problem.domain();
+    let placements = placements(m, old);
+    let mut steps: Vec<Step<D>> = Vec::new();
+    let mut here = old.start().clone();
+    let mut done = 0;
+    loop {
+        let begin = steps.len();
+        let end = placements.get(done).map_or(old.steps().len(), |next| next.step + 1);
+        let known = old.steps().get(begin..end).unwrap_or_default().iter().cloned();
+        match settle(extender, &here, known, rng) {
+            Ok(known) if done == placements.len() => {
+                steps.extend(known);
+                return Some(steps);
+            }
+            Ok(known) => {
+                steps.extend(known);
+                here = old.at(m, end - 1, 1.0)?;
+                done += 1;
+            }
+            Err(_) => break,
+        }
+    }
+    let judge = &mut |here: &State<D>, steps: Vec<Step<D>>, rng: &mut dyn Rng| settle(extender, here, steps, rng).ok();
+    loop {
+        let leap = leap(extender, &here, placements.get(done..).unwrap_or_default(), left, judge, rng)?;
+        steps.extend(leap.steps);
+        here = leap.end;
+        match leap.passed {
+            Some(passed) => done += passed,
+            None => return Some(steps),
+        }
+    }
+}
+
+/// What becomes of the steps of a leap from a state; `None`: it is not made.
+type Judge<'a, D> = &'a mut dyn FnMut(&State<D>, Vec<Step<D>>, &mut dyn Rng) -> Option<Vec<Step<D>>>;
+
 /// An extension to a placement, or to the goal.
 struct Leap<D: Domain> {
-    reached: Vec<Reached<D>>,
+    steps: Vec<Step<D>>,
+    end: State<D>,
     /// How many placements lie behind now; `None` at the goal.
     passed: Option<usize>,
 }
@@ -133,6 +192,7 @@ fn leap<D: Domain>(
     here: &State<D>,
     ahead: &[Placement<D>],
     left: &mut usize,
+    judge: Judge<'_, D>,
     rng: &mut dyn Rng,
 ) -> Option<Leap<D>> {
     let Extender { problem, interrupt, .. } = *extender;
@@ -148,12 +208,17 @@ fn leap<D: Domain>(
             let Some(target) = goal.as_ref().or(ahead.get(count - 1).map(|p| &p.target)) else { break };
             let mut extension = extender.extend(here, target, rng);
             let is_goal = |reached: &Reached<D>| problem.goal().is_satisfied(m, &reached.state);
-            if let Some(last) = extension.reached.iter().position(is_goal) {
+            let passed = if let Some(last) = extension.reached.iter().position(is_goal) {
                 extension.reached.truncate(last + 1);
-                return Some(Leap { reached: extension.reached, passed: None });
-            }
-            if extension.is_met && count <= ahead.len() {
-                return Some(Leap { reached: extension.reached, passed: Some(count) });
+                None
+            } else if extension.is_met && count <= ahead.len() {
+                Some(count)
+            } else {
+                continue;
+            };
+            let end = extension.reached.last().map_or_else(|| here.clone(), |last| last.state.clone());
+            if let Some(steps) = judge(here, joined(extension.reached), rng) {
+                return Some(Leap { steps, end, passed });
             }
         }
         count /= 2;
@@ -161,13 +226,14 @@ fn leap<D: Domain>(
     None
 }
 
-/// Adds what an extension reached, the states of one instance as one step.
-fn append<D: Domain>(steps: &mut Vec<Step<D>>, here: &mut State<D>, reached: Vec<Reached<D>>) {
+/// What an extension reached, the states of one instance as one step.
+fn joined<D: Domain>(reached: Vec<Reached<D>>) -> Vec<Step<D>> {
+    let mut steps: Vec<Step<D>> = Vec::new();
     for r in reached {
         match steps.last_mut().filter(|last| Arc::ptr_eq(&last.instance, &r.instance)) {
             Some(last) => last.until = r.t,
             None => steps.push(Step { instance: r.instance, until: r.t, primitive: r.primitive }),
         }
-        *here = r.state;
     }
+    steps
 }

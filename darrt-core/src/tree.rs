@@ -105,6 +105,34 @@ impl<D: Domain> Tree<D> {
         }
     }
 
+    /// Takes back the nodes from the first on the way to `last` that was reached by `instance`, with all that grew from
+    /// them; the ids of all other nodes change, their order does not. Returns how many there were.
+    pub fn prune(&mut self, last: NodeId, instance: &Arc<Instance<D>>) -> usize {
+        let is_on = |edge: &Edge<D>| Arc::ptr_eq(&edge.instance, instance);
+        let way = std::iter::successors(Some(last), |id| Some(self.node(*id)?.edge.as_ref()?.parent));
+        let on: Vec<NodeId> =
+            way.filter(|id| self.node(*id).and_then(|n| n.edge.as_ref()).is_some_and(is_on)).collect();
+        let Some(first) = on.last().map(|id| id.index()) else { return 0 };
+        let before = self.nodes.len();
+        // By old index: the new one; `None` for what is gone. Parents come before their children.
+        let mut kept: Vec<Option<NodeId>> = Vec::with_capacity(before);
+        let mut nodes = Vec::with_capacity(before);
+        for (index, mut node) in std::mem::take(&mut self.nodes).into_iter().enumerate() {
+            let parent = node.edge.as_ref().map(|edge| kept.get(edge.parent.index()).copied().flatten());
+            let id = u32::try_from(nodes.len()).ok().map(NodeId);
+            let id = if index == first || parent == Some(None) { None } else { id };
+            kept.push(id);
+            if id.is_some() {
+                if let (Some(edge), Some(Some(parent))) = (&mut node.edge, parent) {
+                    edge.parent = parent;
+                }
+                nodes.push(node);
+            }
+        }
+        self.nodes = nodes;
+        before - self.nodes.len()
+    }
+
     /// Adds `metres` to the penalty of all nodes with the placement of this one.
     pub fn penalise(&mut self, id: NodeId, metres: f64) {
         let placement = self.node(id).map(|node| node.placement as usize);

@@ -39,6 +39,9 @@ pub struct Finding {
     pub distance: f64,
     /// Never more than the true distance of the two parts, metres: what a bound on motions may rely on.
     pub lower: f64,
+    /// The unit direction from the first to the second part (world) across which `lower` was measured; zero if it was
+    /// measured otherwise.
+    pub across: Vector3<f64>,
     /// Whether the parts touch or overlap.
     pub intersects: bool,
     /// A point in both or between them (world); hulls and meshes count as their boxes here.
@@ -70,8 +73,12 @@ pub fn nearest(bodies: &[PosedBody<'_>], skip: &dyn Fn(usize, usize) -> bool) ->
     let mut best: Option<Finding> = None;
     each_pair(bodies, skip, &mut |pair| {
         for (parts, a, b) in each_parts(pair) {
-            let intersects = intersect(&a, &b);
-            let apart = if intersects { Apart::NONE } else { separation(&a, &b) };
+            let mut apart = separation(&a, &b);
+            // A plane between the two proves that they do not touch.
+            let intersects = !apart.is_proved() && intersect(&a, &b);
+            if intersects {
+                apart = Apart::NONE;
+            }
             if best.is_none_or(|b| apart.distance < b.distance || (intersects && !b.intersects)) {
                 best = Some(finding(pair, parts, &a, &b, apart, intersects));
             }
@@ -144,8 +151,8 @@ fn finding(
     intersects: bool,
 ) -> Finding {
     let place = place::shared(a.shape, &a.world_from_shape, b.shape, &b.world_from_shape);
-    let Apart { distance, lower } = apart;
-    Finding { first: pair.indices.0, second: pair.indices.1, parts, distance, lower, intersects, place }
+    let Apart { distance, lower, across } = apart;
+    Finding { first: pair.indices.0, second: pair.indices.1, parts, distance, lower, across, intersects, place }
 }
 
 /// Whether two parts touch or overlap.
@@ -167,14 +174,21 @@ struct Apart {
     distance: f64,
     /// See [`Finding::lower`].
     lower: f64,
+    /// See [`Finding::across`].
+    across: Vector3<f64>,
 }
 
 impl Apart {
     /// They touch or overlap.
-    const NONE: Self = Self { distance: 0.0, lower: 0.0 };
+    const NONE: Self = Self { distance: 0.0, lower: 0.0, across: Vector3::new(0.0, 0.0, 0.0) };
 
     fn exactly(distance: f64) -> Self {
-        Self { distance, lower: distance }
+        Self { distance, lower: distance, ..Self::NONE }
+    }
+
+    /// Is there a plane between the two?
+    fn is_proved(&self) -> bool {
+        self.lower > 0.0 && self.across != Vector3::zeros()
     }
 }
 
@@ -193,7 +207,7 @@ fn separation(a: &Placed<'_>, b: &Placed<'_>) -> Apart {
                 _ => 0.0,
             };
             let distance = measured(a, b).min(other);
-            Apart { distance, lower: (distance - MESH_SLACK).max(0.0) }
+            Apart { distance, lower: (distance - MESH_SLACK).max(0.0), ..Apart::NONE }
         }
         _ => convex(a, b),
     }
@@ -226,7 +240,7 @@ fn convex(a: &Placed<'_>, b: &Placed<'_>) -> Apart {
         direction.dot(&part.world_from_shape.translation.vector) + part.shape.support_extent(&local)
     };
     let lower = -extent(b, &-across) - extent(a, &across);
-    Apart { distance, lower: lower.clamp(0.0, distance) }
+    Apart { distance, lower: lower.clamp(0.0, distance), across }
 }
 
 /// Gap between two half spaces: positive only when they face away from each other.

@@ -252,7 +252,7 @@ pub fn strategy(
     Ok(Strategy {
         sampler,
         distance,
-        extend: ExtendOptions { spacing_m: NODE_SPACING, ..ExtendOptions::default() },
+        extend: ExtendOptions { spacing_m: NODE_SPACING, defer: true, ..ExtendOptions::default() },
         reroute: Some(Box::new(Detour::default())),
         try_penalty_m: TRY_PENALTY,
         shorten: ShortenOptions { extensions: SHORTENING },

@@ -139,6 +139,8 @@ pub struct Accounts {
     pub added: u64,
     /// Plans that the verifier refused.
     pub refused: u64,
+    /// Plans that were given up because a motion that had been taken as free is not.
+    pub withdrawn: u64,
     /// How often which pair of bodies blocked an extension.
     pub blocks: BTreeMap<(String, String), u64>,
 }
@@ -161,9 +163,18 @@ impl Accounts {
                 *cell += 1;
             }
         }
-        if let Some(blame) = blame {
-            *self.blocks.entry((blame.first.to_string(), blame.second.to_string())).or_default() += 1;
-        }
+        blame.into_iter().for_each(|blame| self.note(blame));
+    }
+
+    /// Counts a plan that was given up with `removed` states, because of this.
+    pub fn withdraw(&mut self, removed: usize, blame: &Blame) {
+        self.withdrawn += 1;
+        self.added = self.added.saturating_sub(removed as u64);
+        self.note(blame);
+    }
+
+    fn note(&mut self, blame: &Blame) {
+        *self.blocks.entry((blame.first.to_string(), blame.second.to_string())).or_default() += 1;
     }
 
     /// Adds the counts of another attempt at the same problem.
@@ -180,6 +191,7 @@ impl Accounts {
         self.empty += other.empty;
         self.added += other.added;
         self.refused += other.refused;
+        self.withdrawn += other.withdrawn;
         for (pair, n) in &other.blocks {
             *self.blocks.entry(pair.clone()).or_default() += n;
         }

@@ -6,7 +6,7 @@ use super::args::ProblemsOptions;
 use super::exit::{Exit, Failure};
 use super::output::Output;
 use super::table;
-use crate::problem_file::{ProblemFile, builtin, builtin_names, builtin_text};
+use crate::problem_file::{ProblemFile, builtin, builtin_names, builtin_text, further_names};
 
 /// Width of the table in characters.
 const WIDTH: u16 = 100;
@@ -20,7 +20,7 @@ pub(super) fn run(options: &ProblemsOptions, output: &mut Output) -> Result<Exit
         output.print(builtin_text(name)?)?;
         return Ok(Exit::Solved);
     }
-    let problems = builtin_names().into_iter().map(builtin).collect::<Result<Vec<_>, _>>()?;
+    let problems = builtin_names().into_iter().chain(further_names()).map(builtin).collect::<Result<Vec<_>, _>>()?;
     output.print(&list(&problems))?;
     output.print("\nPaper: mean planning time of ten trials that the paper reports for the problem of that name.")?;
     output.print("Solve one with `darrt plan NAME`, copy one with `darrt problems --print NAME > FILE`.")?;
@@ -45,7 +45,8 @@ mod tests {
 
     #[test]
     fn every_problem_has_a_row_with_the_time_of_the_paper() {
-        let problems: Vec<_> = builtin_names().into_iter().map(|name| builtin(name).unwrap()).collect();
+        let problems: Vec<_> =
+            builtin_names().into_iter().chain(further_names()).map(|name| builtin(name).unwrap()).collect();
         let text = list(&problems);
         for (name, time) in [("plate1", "257 s"), ("plate3", "480 s"), ("bowl", "66 s"), ("simple-plate", "19 s")] {
             let line = text.lines().find(|line| line.split_whitespace().next() == Some(name)).unwrap();

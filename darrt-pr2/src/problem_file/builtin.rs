@@ -1,10 +1,10 @@
-//! The paper's problems, embedded in the program.
+//! The paper's problems, and further ones, embedded in the program.
 
 use super::ProblemFile;
 use super::error::ProblemFileError;
 use super::suggest::nearest;
 
-/// Name and text of every embedded problem, from easy to hard.
+/// Name and text of the paper's problems, from easy to hard.
 const PROBLEMS: [(&str, &str); 6] = [
     ("simple-plate", include_str!("../../scenes/simple-plate.toml")),
     ("bowl", include_str!("../../scenes/bowl.toml")),
@@ -14,7 +14,18 @@ const PROBLEMS: [(&str, &str); 6] = [
     ("plate3", include_str!("../../scenes/plate3.toml")),
 ];
 
-/// The names of the embedded problems, from easy to hard.
+/// Problems on which other planners have been measured.
+const FURTHER: [(&str, &str); 2] = [
+    ("two-tables", include_str!("../../scenes/two-tables.toml")),
+    ("two-tables-cups", include_str!("../../scenes/two-tables-cups.toml")),
+];
+
+/// The names of the embedded problems that are not the paper's, from easy to hard.
+pub fn further_names() -> [&'static str; 2] {
+    FURTHER.map(|(name, _)| name)
+}
+
+/// The names of the paper's problems, from easy to hard.
 pub fn builtin_names() -> [&'static str; 6] {
     PROBLEMS.map(|(name, _)| name)
 }
@@ -45,14 +56,18 @@ pub fn canonical_name(name: &str) -> Option<&'static str> {
 pub(super) fn unknown(name: &str) -> ProblemFileError {
     ProblemFileError::UnknownProblem {
         name: super::suggest::shown(name),
-        nearest: nearest(name, builtin_names()).map(str::to_owned),
-        available: builtin_names().map(str::to_owned).to_vec(),
+        nearest: nearest(name, all_names()).map(str::to_owned),
+        available: all_names().map(str::to_owned).collect(),
     }
+}
+
+fn all_names() -> impl Iterator<Item = &'static str> {
+    builtin_names().into_iter().chain(further_names())
 }
 
 fn find(name: &str) -> Option<(&'static str, &'static str)> {
     let wanted = folded(name);
-    PROBLEMS.into_iter().find(|(candidate, _)| folded(candidate) == wanted)
+    PROBLEMS.into_iter().chain(FURTHER).find(|(candidate, _)| folded(candidate) == wanted)
 }
 
 /// Letters and digits only, in lower case: what the spellings of one name have in common.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use darrt_geom::{Body, Shape, clearance};
+use darrt_geom::{Body, Clearance, Shape, clearance};
 use nalgebra::{Isometry3, Point2, Vector2, Vector3};
 
 use super::options::VerifyOptions;
@@ -86,7 +86,8 @@ impl PushCore {
         Ok(Self { core: body, name })
     }
 
-    /// No finger reaches deeper into the object than its skin.
+    /// No finger reaches deeper into the object than its skin. The nearest points of each fingertip and the core, left and
+    /// right; `None` for one that has no shape.
     pub(super) fn check_depth(
         &self,
         site: Site,
@@ -94,22 +95,29 @@ impl PushCore {
         robot: &Robot,
         stage: &Stage,
         object: usize,
-    ) -> Result<(), Refusal> {
+    ) -> Result<[Option<Clearance>; 2], Refusal> {
         let (_, pose) = stage.object(object);
-        for index in robot.fingers.into_iter().flat_map(|link| robot.solids_of(link)) {
-            let (solid, solid_pose) = stage.link_solid(index);
-            let refuse = |text: String| site.refusal(time, RefusalKind::Push, text).about(solid.name(), &self.name);
-            let found = clearance::between(&solid.body, solid_pose, &self.core, pose);
-            let found = found.map_err(|error| refuse(error.to_string()))?;
-            if found.distance <= 0.0 {
-                return Err(refuse(format!("{} presses into {}", solid.name(), self.name)).at(&found.first));
+        let mut nearest = [None; 4];
+        for (link, nearest) in robot.fingers.into_iter().zip(&mut nearest) {
+            for index in robot.solids_of(link) {
+                let (solid, solid_pose) = stage.link_solid(index);
+                let refuse = |text: String| site.refusal(time, RefusalKind::Push, text).about(solid.name(), &self.name);
+                let found = clearance::between(&solid.body, solid_pose, &self.core, pose);
+                let found = found.map_err(|error| refuse(error.to_string()))?;
+                if found.distance <= 0.0 {
+                    return Err(refuse(format!("{} presses into {}", solid.name(), self.name)).at(&found.first));
+                }
+                if nearest.is_none_or(|n: Clearance| found.distance < n.distance) {
+                    *nearest = Some(found);
+                }
             }
         }
-        Ok(())
+        let [_, _, left, right] = nearest;
+        Ok([left, right])
     }
 
     /// Both fingertips touch the rim, behind the centre and on either side of it, and the object moves by `way` along the
-    /// ray from the middle of the contacts through its centre.
+    /// ray from the middle of the contacts through its centre. `tips`: see [`PushCore::check_depth`].
     #[expect(clippy::too_many_arguments, reason = "one moment of a push")]
     pub(super) fn check_contact(
         &self,
@@ -118,6 +126,7 @@ impl PushCore {
         robot: &Robot,
         stage: &Stage,
         object: usize,
+        tips: [Option<Clearance>; 2],
         way: &Vector2<f64>,
         options: &VerifyOptions,
     ) -> Result<(), Refusal> {
@@ -126,18 +135,9 @@ impl PushCore {
         let direction = way.normalize();
         let [_, _, left, right] = robot.fingers;
         let mut contacts = Vec::new();
-        for tip in [left, right] {
+        for (tip, nearest) in [left, right].into_iter().zip(tips) {
             let name = robot.tree.link_names().get(tip).map_or("fingertip", |name| name);
             let refuse = |text: String| site.refusal(time, RefusalKind::Push, text).about(name, &self.name);
-            let mut nearest: Option<darrt_geom::Clearance> = None;
-            for index in robot.solids_of(tip) {
-                let (solid, solid_pose) = stage.link_solid(index);
-                let found = clearance::between(&solid.body, solid_pose, &self.core, pose);
-                let found = found.map_err(|error| refuse(error.to_string()))?;
-                if nearest.is_none_or(|n| found.distance < n.distance) {
-                    nearest = Some(found);
-                }
-            }
             let Some(found) = nearest else { return Err(refuse(format!("{name} has no shape to touch with"))) };
             if found.distance > 2.0 * options.push_contact_m {
                 let gap = found.distance - options.push_contact_m;

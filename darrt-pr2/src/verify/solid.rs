@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use darrt_geom::oracle::{self, PosedBody};
 use darrt_geom::{Body, GeomError, Shape};
-use nalgebra::{Isometry3, Point3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
 /// A solid in its own frame with simple shapes around it.
 #[derive(Debug, Clone)]
@@ -24,6 +24,8 @@ pub(super) struct Answer {
     pub(super) distance: f64,
     /// Never more than the true distance.
     pub(super) lower: f64,
+    /// The unit direction from the first to the second across which `lower` was measured, world; zero if there is none.
+    pub(super) across: Vector3<f64>,
     pub(super) intersects: bool,
     /// A point in both or between them, world.
     pub(super) place: Point3<f64>,
@@ -58,7 +60,7 @@ impl Solid {
     /// Distance from a point of the own frame to the box around the solid.
     fn beyond_box(&self, p: &Point3<f64>) -> f64 {
         let beside = (self.low - p).sup(&(p - self.high));
-        beside.sup(&nalgebra::Vector3::zeros()).norm()
+        beside.sup(&Vector3::zeros()).norm()
     }
 }
 
@@ -95,6 +97,17 @@ pub(super) fn lower_bound(a: &Placed<'_>, b: &Placed<'_>) -> f64 {
     a.beyond_box(&b.centre) - solid_b.radius
 }
 
+/// A lower bound of the distance between two solids: the gap between them along a unit direction from `a` to `b` (world).
+/// Whatever the direction, a plane across it lies between them if it is positive.
+pub(super) fn gap_across(a: &Placed<'_>, b: &Placed<'_>, across: &Vector3<f64>) -> f64 {
+    let extent = |placed: &Placed<'_>, direction: &Vector3<f64>| {
+        let local = placed.world_from_solid.inverse_transform_vector(direction);
+        let own = placed.solid.shape().map_or(f64::INFINITY, |shape| shape.support_extent(&local));
+        direction.dot(&placed.world_from_solid.translation.vector) + own
+    };
+    -extent(b, &-across) - extent(a, across)
+}
+
 /// The oracle's answer about two solids.
 pub(super) fn exact(
     a: &Solid,
@@ -108,10 +121,12 @@ pub(super) fn exact(
     ];
     let found = oracle::nearest(&bodies, &|_, _| false)?;
     // Two bodies are one pair, so there is always an answer.
-    let touching = Answer { distance: 0.0, lower: 0.0, intersects: true, place: world_from_a * a.centre };
+    let place = world_from_a * a.centre;
+    let touching = Answer { distance: 0.0, lower: 0.0, across: Vector3::zeros(), intersects: true, place };
     Ok(found.map_or(touching, |f| Answer {
         distance: f.distance,
         lower: f.lower,
+        across: f.across,
         intersects: f.intersects,
         place: f.place,
     }))
@@ -120,7 +135,7 @@ pub(super) fn exact(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{UnitQuaternion, Vector3};
+    use nalgebra::UnitQuaternion;
     use rand::{RngExt as _, SeedableRng as _};
 
     #[test]
@@ -139,6 +154,7 @@ mod tests {
             let turn = UnitQuaternion::from_euler_angles(number(3.0), number(1.5), number(3.0));
             Isometry3::from_parts(at.into(), turn)
         };
+        let mut earlier = Vector3::z();
         for _ in 0..300 {
             for a in &solids[..3] {
                 for b in &solids {
@@ -148,6 +164,12 @@ mod tests {
                     let bound = lower_bound(&placed_a, &placed_b);
                     let found = exact(a, &at_a, b, &at_b).unwrap();
                     assert!(bound <= found.distance + 1e-9, "{bound} {found:?}");
+                    // Also across the direction of an earlier answer, which is that of other poses here.
+                    for direction in [found.across, earlier] {
+                        let gap = gap_across(&placed_a, &placed_b, &direction);
+                        assert!(gap <= found.distance + 1e-9, "{gap} {found:?}");
+                    }
+                    earlier = found.across;
                 }
             }
         }

@@ -3,11 +3,11 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use nalgebra::{Isometry3, Point3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::approach::{Movers, Speeds};
 use super::robot::Robot;
-use super::solid::{Placed, Solid, exact, lower_bound};
+use super::solid::{Placed, Solid, exact, gap_across, lower_bound};
 use super::world::World;
 
 /// Slack on top of the depth to which an object may press into what carries it, metres.
@@ -23,6 +23,9 @@ const AHEAD_PARTS: f64 = 10.0;
 /// Part of the smallest distance seen so far below which a pair is looked at again, though it cannot touch yet. The smallest
 /// clearance is known to within this part.
 const SOUGHT: f64 = 0.5;
+
+/// Part of the distance last measured down to which the direction across it is kept.
+const FRESH: f64 = 0.5;
 
 /// How a pair is treated during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,6 +60,10 @@ struct Pair {
     b: usize,
     kind: PairKind,
     rule: Rule,
+    /// The direction across which the two were last found apart, world; zero if none is known.
+    across: Vector3<f64>,
+    /// How far apart they were then, metres.
+    apart_m: f64,
 }
 
 /// When a pair must be looked at again.
@@ -158,7 +165,8 @@ impl Stage {
         let mut poses = vec![Isometry3::identity(); first_fixed];
         poses.extend(world.fixed.iter().map(|(_, pose)| *pose));
         let mut pairs = Vec::new();
-        let mut add = |a, b, kind| pairs.push(Pair { a, b, kind, rule: Rule::Apart });
+        let mut add =
+            |a, b, kind| pairs.push(Pair { a, b, kind, rule: Rule::Apart, across: Vector3::zeros(), apart_m: 0.0 });
         for (i, solid) in robot.solids.iter().enumerate() {
             (0..objects).for_each(|o| add(i, links + o, PairKind::LinkObject { link: solid.link, object: o }));
             (first_fixed..solids.len()).for_each(|f| add(i, f, PairKind::Other));
@@ -199,21 +207,35 @@ impl Stage {
         }
     }
 
-    /// Decides anew how each pair is treated; the next check looks at all of them.
+    /// Decides anew how each pair is treated; the next check looks at all those that are treated in another way now, and
+    /// of the others at those that could be near.
     pub(super) fn set_rules(&mut self, rule: impl Fn(PairKind) -> Rule) {
-        let mut classes: BTreeMap<Movers, Class> = BTreeMap::new();
-        for (index, pair) in self.pairs.iter_mut().enumerate() {
-            pair.rule = rule(pair.kind);
-            let between = self.movers[pair.a].between(self.movers[pair.b]);
-            let class = classes.entry(between).or_insert_with(|| Class { between, ..Class::default() });
-            let due = Due { reserve_m: f64::NEG_INFINITY, pair: index };
-            match pair.rule {
-                Rule::Free => {}
-                Rule::Apart => class.apart.push(due),
-                Rule::Standing => class.standing.push(due),
+        let mut known_m = vec![f64::NEG_INFINITY; self.pairs.len()];
+        for class in std::mem::take(&mut self.classes) {
+            for due in class.apart.iter().chain(&class.standing) {
+                known_m[due.pair] = due.reserve_m - class.travelled_m;
             }
         }
-        self.classes = classes.into_values().collect();
+        let mut dues: BTreeMap<Movers, [Vec<Due>; 2]> = BTreeMap::new();
+        for ((index, pair), known_m) in self.pairs.iter_mut().enumerate().zip(known_m) {
+            let before = std::mem::replace(&mut pair.rule, rule(pair.kind));
+            let between = self.movers[pair.a].between(self.movers[pair.b]);
+            let [apart, standing] = dues.entry(between).or_default();
+            let reserve_m = if pair.rule == before { known_m } else { f64::NEG_INFINITY };
+            let due = Due { reserve_m, pair: index };
+            match pair.rule {
+                Rule::Free => {}
+                Rule::Apart => apart.push(due),
+                Rule::Standing => standing.push(due),
+            }
+        }
+        let class = |(between, [apart, standing]): (Movers, [Vec<Due>; 2])| Class {
+            between,
+            apart: apart.into(),
+            standing: standing.into(),
+            ..Class::default()
+        };
+        self.classes = dues.into_iter().map(class).collect();
     }
 
     /// Says how fast things move in the segment that begins here, which has `parts` equal parts.
@@ -306,12 +328,20 @@ impl Stage {
             placed_a.centre.z += self.lift_m;
         }
         let placed_b = Placed { solid: solid_b, world_from_solid: &self.poses[b], centre: self.centres[b] };
-        let bound = lower_bound(&placed_a, &placed_b);
-        let (pose_a, pose_b) = (placed_a.world_from_solid, placed_b.world_from_solid);
-        let is_counted = pair.rule == Rule::Apart && bound < nearest;
-        if bound > 0.0 && !is_counted && bound >= enough_m {
+        let is_counted = |bound: f64| pair.rule == Rule::Apart && bound < nearest;
+        let is_clear = |bound: f64, enough_m: f64| bound > 0.0 && !is_counted(bound) && bound >= enough_m;
+        let mut bound = lower_bound(&placed_a, &placed_b);
+        if is_clear(bound, enough_m) {
             return Ok(bound);
         }
+        if pair.across != Vector3::zeros() {
+            // OPTIMIZATION: what kept the two apart a moment ago mostly still does.
+            bound = bound.max(gap_across(&placed_a, &placed_b, &pair.across));
+            if is_clear(bound, enough_m.min(FRESH * pair.apart_m)) {
+                return Ok(bound);
+            }
+        }
+        let (pose_a, pose_b) = (placed_a.world_from_solid, placed_b.world_from_solid);
         self.exact_tests += 1;
         let names = || (solid_a.name().to_owned(), solid_b.name().to_owned());
         // A pose that the oracle refuses counts as a collision.
@@ -321,9 +351,11 @@ impl Stage {
         if answer.intersects {
             return Err(Hit { names: names(), place: answer.place });
         }
-        if is_counted && answer.distance < nearest {
+        if is_counted(bound) && answer.distance < nearest {
             self.smallest = Some(SmallestClearance { distance_m: answer.distance, bodies: names(), step, time });
         }
+        let pair = &mut self.pairs[index];
+        (pair.across, pair.apart_m) = (answer.across, answer.lower);
         Ok(answer.lower.max(bound))
     }
 

@@ -56,10 +56,10 @@ impl<'a> Judge<'a> {
     ) -> Result<(), Refusal> {
         let site = trial.site;
         if let (Some(core), Some(object)) = (&trial.core, trial.act.pushed) {
-            core.check_depth(site, time, &self.robot, &self.stage, object)?;
+            let tips = core.check_depth(site, time, &self.robot, &self.stage, object)?;
             self.check_on_surface(site, time, object, now)?;
             if let Some(way) = way {
-                core.check_contact(site, time, &self.robot, &self.stage, object, &way, self.options)?;
+                core.check_contact(site, time, &self.robot, &self.stage, object, tips, &way, self.options)?;
             }
         }
         if let Some(holding) = trial.act.holding {

@@ -1,0 +1,63 @@
+//! Motions that were taken as free are judged once a plan needs them.
+//!
+//! Whether a whole motion is free is dear to find out, and mostly it is: primitives ask about its cornerstones before they
+//! propose it. A search that puts the question off asks it for the few motions of a plan, not for all those of a tree.
+
+use std::sync::Arc;
+
+use rand::Rng;
+
+use crate::budget::Stop;
+use crate::domain::Domain;
+use crate::extend::Extender;
+use crate::motion::Instance;
+use crate::plan::Step;
+use crate::state::State;
+use crate::validity::Blame;
+
+/// Why steps stay unsettled.
+#[derive(Debug)]
+pub enum Unsettled<D: Domain> {
+    /// This motion is blocked, and there is no way around that could be found.
+    Blocked(Arc<Instance<D>>, Blame),
+    /// Nobody waits for them any more.
+    Cancelled,
+}
+
+/// Steps that begin at `here`, every motion judged: one that is blocked goes another way between its ends if it may turn
+/// aside. Without [`ExtendOptions::defer`](crate::extend::ExtendOptions::defer) they have been judged before and stay. Only
+/// a cancellation stops it: a plan that was found in time is worth the rest.
+///
+/// # Errors
+/// [`Unsettled`] with the first motion that stays blocked.
+///
+/// # Source
+/// Bohlin and Kavraki, Path planning using lazy PRM, ICRA 2000: edges are checked when a path wants them.
+pub fn settle<D: Domain>(
+    extender: &Extender<'_, D>,
+    here: &State<D>,
+    steps: impl IntoIterator<Item = Step<D>>,
+    rng: &mut dyn Rng,
+) -> Result<Vec<Step<D>>, Unsettled<D>> {
+    let Extender { problem, options, reroute, interrupt } = *extender;
+    if !options.defer {
+        return Ok(steps.into_iter().collect());
+    }
+    let (m, validity) = (problem.domain(), problem.validity());
+    let mut here = here.clone();
+    let settled = |mut step: Step<D>| {
+        if interrupt.stop() == Some(Stop::Cancelled) {
+            return Err(Unsettled::Cancelled);
+        }
+        let free = validity.free_prefix(m, &step.instance, &here);
+        if let Some(blame) = free.blame.filter(|_| free.fraction < step.until) {
+            let turns = reroute.filter(|r| r.is_free_to_turn(&step.instance));
+            let around = turns.and_then(|r| r.reroute(m, validity, &step.instance, &here, rng)).map(Arc::new);
+            let free = around.filter(|around| validity.free_prefix(m, around, &here).blame.is_none());
+            step.instance = free.ok_or_else(|| Unsettled::Blocked(Arc::clone(&step.instance), blame))?;
+        }
+        here = step.instance.at(m, step.until, &here);
+        Ok(step)
+    };
+    steps.into_iter().map(settled).collect()
+}
