@@ -1,4 +1,12 @@
 //! DARRT (Algorithm 1 of the paper): one attempt from the initial state.
+//!
+//! | variant | what is different |
+//! |---|---|
+//! | [`Darrt`] | nothing: Algorithm 1 |
+//! | [`connect`] | a second tree grows backwards from the goal |
+//! | [`hierarchical`] | the objects are planned first, as if the robot could pass through everything |
+//!
+//! All are a [`Planner`], made by [`Algorithm::planner`], and run by [`solve_with`](crate::solve::solve_with).
 
 use crate::budget::{Interrupt, Stop};
 use crate::distance::Distance;
@@ -16,6 +24,12 @@ use crate::state::State;
 use crate::tree::{Edge, NodeId, Tree};
 use crate::validity::Blame;
 use crate::verify::{Refusal, Solution};
+
+mod algorithm;
+pub mod connect;
+pub mod hierarchical;
+
+pub use algorithm::{Algorithm, Planner, Start};
 
 /// The parts of the search that are variants of one trait each.
 pub struct Strategy<D: Domain> {
@@ -42,10 +56,11 @@ impl<D: Domain> std::fmt::Debug for Strategy<D> {
 }
 
 /// One attempt: a tree that grows from the initial state.
-#[derive(Debug)]
 pub struct Darrt<'p, D: Domain> {
-    problem: &'p Problem<D>,
+    problem: Problem<D>,
     strategy: &'p Strategy<D>,
+    /// The sampler of this attempt alone, if it learns.
+    learner: Option<Box<dyn Sampler<D>>>,
     interrupt: Interrupt<'p>,
     tree: Tree<D>,
     accounts: Accounts,
@@ -55,6 +70,26 @@ pub struct Darrt<'p, D: Domain> {
     node_limit: usize,
     goal_sample: Option<PartialState<D>>,
     nearest_to_goal: f64,
+}
+
+// Not derived: a sampler is not printable.
+impl<D: Domain> std::fmt::Debug for Darrt<'_, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Darrt")
+            .field("attempt", &self.attempt)
+            .field("iteration", &self.iteration)
+            .field("nodes", &self.tree.len())
+            .finish_non_exhaustive()
+    }
+}
+
+/// What an extension of a node did to the tree.
+struct Grown<D: Domain> {
+    step: Step<D>,
+    /// The last node that it added; the node itself if it added none.
+    last: NodeId,
+    /// Did it meet its target?
+    is_met: bool,
 }
 
 /// What one iteration did.
@@ -74,15 +109,16 @@ pub struct Step<D: Domain> {
 
 impl<'p, D: Domain> Darrt<'p, D> {
     /// `V <- {c_I}`. Random choices are keyed by `(seed, attempt, iteration)`.
-    pub fn new(problem: &'p Problem<D>, strategy: &'p Strategy<D>, seed: u64, attempt: u64, node_limit: usize) -> Self {
+    pub fn new(problem: &Problem<D>, strategy: &'p Strategy<D>, seed: u64, attempt: u64, node_limit: usize) -> Self {
         let names = problem.primitives().iter().map(|p| p.name()).collect();
         let mut rng = stream(seed, attempt, 0, Purpose::Attempt);
         let goal_sample = problem.goal().sample(problem.domain(), &mut rng);
         let mut darrt = Self {
-            problem,
+            problem: problem.clone(),
             strategy,
+            learner: strategy.sampler.for_one_attempt(),
             interrupt: Interrupt::NEVER,
-            tree: Tree::rooted_at(problem.start().clone()),
+            tree: Tree::rooted_at(problem.domain(), problem.start().clone()),
             accounts: Accounts::new(names),
             seed,
             attempt,
@@ -101,27 +137,47 @@ impl<'p, D: Domain> Darrt<'p, D> {
         Self { interrupt, ..self }
     }
 
-    fn extender(&self) -> Extender<'p, D> {
-        let Self { problem, strategy, interrupt, .. } = *self;
+    fn extender(&self) -> Extender<'_, D> {
+        let Self { problem, strategy, interrupt, .. } = self;
+        let interrupt = *interrupt;
         Extender { problem, options: &strategy.extend, reroute: strategy.reroute.as_deref(), interrupt }
     }
 
     /// One iteration of the loop of Algorithm 1.
     pub fn step(&mut self) -> Step<D> {
-        let m = self.problem.domain();
+        let s = self.draw();
+        let t = self.nearest(&s);
+        self.grow(t, &s).step
+    }
+
+    /// Begins an iteration, and draws its sample.
+    fn draw(&mut self) -> PartialState<D> {
         self.iteration += 1;
         let draw = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Sample);
-        let choose = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Extend);
+        let sampler = self.learner.as_ref().unwrap_or(&self.strategy.sampler);
+        sampler.sample(self.problem.domain(), self.problem.goal(), draw)
+    }
 
-        let s = self.strategy.sampler.sample(m, self.problem.goal(), draw);
-        let t = self.strategy.distance.nearest(m, &self.tree, &s).unwrap_or(Tree::<D>::ROOT);
+    fn nearest(&self, s: &PartialState<D>) -> NodeId {
+        let nearest = self.strategy.distance.nearest(self.problem.domain(), &self.tree, s);
+        nearest.unwrap_or(Tree::<D>::ROOT)
+    }
+
+    /// Extends node `t` towards `s`, and takes in what is reached.
+    fn grow(&mut self, t: NodeId, s: &PartialState<D>) -> Grown<D> {
+        let choose = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Extend);
         let from = self.tree.node(t).map_or(self.problem.start(), |node| &node.state);
-        let extension = self.extender().extend(from, &s, choose);
+        let extension = self.extender().extend(from, s, choose);
+        let m = self.problem.domain();
+        if let (Some(learner), Some(_)) = (&mut self.learner, &extension.blame) {
+            learner.learn_block(m, extension.reached.last().map_or(from, |reached| &reached.state), s);
+        }
         let (is_met, buckets) = (extension.is_met, extension.buckets.clone());
         self.tree.penalise(t, self.strategy.try_penalty_m);
         let step = self.absorb(t, extension);
         self.accounts.count(&buckets, step.added, is_met, step.blame.as_ref());
-        step
+        let last = if step.added > 0 { self.tree.last() } else { t };
+        Grown { step, last, is_met }
     }
 
     /// The empty plan, if the start lies in the goal and the verifier agrees.
@@ -140,7 +196,11 @@ impl<'p, D: Domain> Darrt<'p, D> {
             self.note_distance_to_goal(&reached.state);
             let is_goal = self.problem.goal().is_satisfied(self.problem.domain(), &reached.state);
             let edge = Edge { parent, instance: reached.instance, t: reached.t, primitive: reached.primitive };
-            let id = if self.tree.len() < self.node_limit { self.tree.add(reached.state, edge) } else { None };
+            let id = if self.tree.len() < self.node_limit {
+                self.tree.add(self.problem.domain(), reached.state, edge)
+            } else {
+                None
+            };
             let Some(id) = id else {
                 step.stop = Some(Stop::NodeLimit);
                 return step;
@@ -175,8 +235,12 @@ impl<'p, D: Domain> Darrt<'p, D> {
 
     fn prove(&self, node: NodeId) -> Result<Solution<D>, Refusal> {
         let lost = || Refusal { step: None, at: 0.0, reason: "the tree has no such node".to_owned() };
-        let plan = Plan::to_node(&self.tree, node).ok_or_else(lost)?;
-        let p = self.problem;
+        self.prove_plan(Plan::to_node(&self.tree, node).ok_or_else(lost)?)
+    }
+
+    /// Has a plan verified, made shorter if it can be.
+    fn prove_plan(&self, plan: Plan<D>) -> Result<Solution<D>, Refusal> {
+        let p = &self.problem;
         let rng = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Shorten);
         // A shorter plan that the verifier refuses is no reason to give up the longer one.
         if let Some(short) = shorten(&self.extender(), &plan, self.strategy.shorten, rng)
@@ -195,6 +259,11 @@ impl<'p, D: Domain> Darrt<'p, D> {
             let d = self.strategy.distance.distance(self.problem.domain(), state, goal);
             self.nearest_to_goal = self.nearest_to_goal.min(d);
         }
+    }
+
+    /// Counts a plan that the verifier refused.
+    fn count_refusal(&mut self) {
+        self.accounts.refused += 1;
     }
 
     /// The tree so far.
