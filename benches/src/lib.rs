@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`arm`] | configurations and reachable poses of the PR2's right arm |
 //! | [`room`] | the PR2 in the scene of Plate3, and random states there |
+//! | [`trees`] | trees of any size in any domain |
 //! | [`pucks`] | trees, strategies and runs of the puck domain |
 
 #![allow(
@@ -16,6 +17,7 @@
 pub mod arm;
 pub mod pucks;
 pub mod room;
+pub mod trees;
 
 /// The generator for the `index`-th piece of a fixture.
 pub fn stream(index: u64) -> darrt_core::random::Stream {

@@ -1,22 +1,19 @@
 //! The puck domain: trees of any size, and runs of the planner at fixed seeds.
 
-use std::sync::Arc;
-
 use darrt_core::budget::Budget;
-use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
+use darrt_core::distance::{ApproachVisit, Distance, Euclidean, ExactTour, GreedyVisit, Weighted};
 use darrt_core::domain::Domain;
-use darrt_core::motion::{Instance, Straight};
 use darrt_core::observe::Silent;
 use darrt_core::partial::PartialState;
 use darrt_core::problem::Problem;
-use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler};
+use darrt_core::sample::{Frontier, Full, GoalBiased, Placed, RandomSubset, RobotOrObjects, Sampler};
 use darrt_core::search::Strategy;
 use darrt_core::solve::{SolveOptions, solve};
-use darrt_core::space::ComponentSpace as _;
-use darrt_core::state::{ComponentSet, State};
+use darrt_core::space::{ComponentSpace as _, Place};
+use darrt_core::state::State;
 use darrt_core::testing::puck::problems::{self, Ready};
-use darrt_core::testing::puck::{Mode, PuckWorld, paper_strategy};
-use darrt_core::tree::{Edge, Tree};
+use darrt_core::testing::puck::{Mode, Pick, PuckWorld, Push, Setup, paper_strategy};
+use darrt_core::tree::Tree;
 
 use crate::stream;
 
@@ -41,26 +38,47 @@ const ITERATIONS: u64 = 1000;
 pub type NamedSampler = (&'static str, fn() -> Box<dyn Sampler<PuckWorld>>);
 
 /// The ways of sampling. A new one is compared by being added here.
-pub const SAMPLERS: [NamedSampler; 3] = [
+pub const SAMPLERS: [NamedSampler; 6] = [
     ("full", || Box::new(Full)),
     ("random subset", || Box::new(RandomSubset)),
-    ("robot or objects", || Box::new(RobotOrObjects::new(0.5, 0.0).unwrap())),
+    ("robot or objects", || Box::new(robot_or_objects())),
+    ("standing", || Box::new(Placed::new(robot_or_objects(), Place::OnSupport, 0.7).unwrap())),
+    ("edge of the support", || Box::new(Placed::new(robot_or_objects(), Place::SupportEdge, 0.3).unwrap())),
+    ("frontier", || Box::new(Frontier::new(robot_or_objects(), 0.3, 0.2).unwrap())),
 ];
+
+fn robot_or_objects() -> RobotOrObjects {
+    RobotOrObjects::new(0.5, 0.0).unwrap()
+}
 
 /// Names one distance and makes it.
 pub type NamedDistance = (&'static str, fn() -> Box<dyn Distance<PuckWorld>>);
 
 /// The distances. A new one is compared by being added here.
-pub const DISTANCES: [NamedDistance; 3] = [
+pub const DISTANCES: [NamedDistance; 6] = [
     ("euclidean", || Box::new(Euclidean)),
     ("greedy visit", || Box::new(GreedyVisit)),
     ("exact tour", || Box::new(ExactTour)),
+    ("weighted sum", || Box::new(Weighted::sum(0.3, 1.0).unwrap())),
+    ("maximum", || Box::new(Weighted::maximum(1.0, 1.0).unwrap())),
+    ("greedy visit to the contact", || Box::new(ApproachVisit::new(vec![Box::new(Push), Box::new(Pick)]))),
 ];
 
 /// The strategy of the paper with these two parts replaced.
 pub fn strategy(sampler: Box<dyn Sampler<PuckWorld>>, distance: Box<dyn Distance<PuckWorld>>) -> Strategy<PuckWorld> {
     let sampler = Box::new(GoalBiased::new(sampler, 0.2).unwrap());
     Strategy { sampler, distance, ..paper_strategy().unwrap() }
+}
+
+/// A puck that can only be pushed, in a pen with its goal outside: no seed solves it.
+pub fn unreachable() -> Problem<PuckWorld> {
+    Setup::new([4.0, 3.0], 0.15)
+        .robot_at([0.5, 1.5])
+        .puck("red", 0.12, [1.5, 1.0])
+        .wall("fence", [2.4, 0.0], [2.6, 3.0])
+        .puck_goal(0, [3.3, 2.0])
+        .problem()
+        .unwrap()
 }
 
 /// A state with everything anywhere in its space, nothing held.
@@ -78,21 +96,7 @@ pub fn targets(problem: &Problem<PuckWorld>, count: u64) -> Vec<PartialState<Puc
 
 /// A tree of `count` random states, all of them children of the root.
 pub fn tree(m: &PuckWorld, count: u64) -> Tree<PuckWorld> {
-    let root = state(m, 0);
-    let instance = Arc::new(Instance {
-        label: "Transit",
-        motion: Box::new(Straight::new(root.clone(), root.robot, 0.0)),
-        contacts: ComponentSet::EMPTY,
-        moves: ComponentSet::ROBOT,
-        object: None,
-        reversible: true,
-    });
-    let mut tree = Tree::rooted_at(root);
-    for index in 1..count {
-        let edge = Edge { parent: Tree::<PuckWorld>::ROOT, instance: Arc::clone(&instance), t: 1.0, primitive: 0 };
-        tree.add(state(m, index), edge).unwrap();
-    }
-    tree
+    crate::trees::random(m, &state(m, 0), count)
 }
 
 /// What the runs over all [`SEEDS`] needed.

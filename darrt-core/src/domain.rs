@@ -12,7 +12,8 @@ use crate::state::{ComponentId, ObjectConfig, ObjectId, RobotConfig};
 /// enum space.
 ///
 /// # Laws
-/// `reach` and `hop` are finite and non-negative.
+/// `reach` and `hop` are finite and non-negative. Two points of an object lie no farther apart than its two
+/// configurations, and `reach_at_least` of the gap between working point and object is at most `reach`.
 ///
 /// # Example
 /// See `testing::puck` (feature `testing`), a disc that pushes and carries pucks.
@@ -59,6 +60,18 @@ pub trait Domain: Sized + Send + Sync + 'static {
         at: &ObjectConfig<Self>,
     ) -> f64 {
         self.reach(robot, object, at)
+    }
+
+    /// A point that goes with `object`, metres, in the frame of the working point. With
+    /// [`reach_at_least`](Self::reach_at_least) it lets the search for the nearest node pass over most of the tree.
+    fn object_point(&self, _object: ObjectId, _at: &ObjectConfig<Self>) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    /// What [`reach`](Self::reach) is at least when the working point lies `gap_m` metres from the point of `object`; never
+    /// less for a wider gap.
+    fn reach_at_least(&self, _object: ObjectId, _gap_m: f64) -> f64 {
+        0.0
     }
 
     /// Metres the working point travels from acting on one object to acting on another.

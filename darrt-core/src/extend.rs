@@ -31,11 +31,13 @@ pub struct ExtendOptions {
     /// ([`settle`](crate::settle::settle)); only their ends become nodes. Plans are then repaired while they are made
     /// shorter, so [`Strategy::shorten`](crate::search::Strategy::shorten) should allow some extensions.
     pub defer: bool,
+    /// Metres of travel after which an extension ends, as in a classic RRT; positive. `None`: it goes as far as PATH leads.
+    pub step_m: Option<f64>,
 }
 
 impl Default for ExtendOptions {
     fn default() -> Self {
-        Self { spacing_m: 0.1, max_depth: 20, defer: false }
+        Self { spacing_m: 0.1, max_depth: 20, defer: false, step_m: None }
     }
 }
 
@@ -46,9 +48,12 @@ impl ExtendOptions {
     /// Checks the ranges.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a spacing that is not finite and positive, or a depth of zero.
+    /// [`Error::Parameter`] for a spacing or step that is not finite and positive, or a depth of zero.
     pub fn check(&self) -> Result<(), Error> {
         in_range("spacing_m", self.spacing_m, f64::MIN_POSITIVE, f64::MAX, "finite and positive")?;
+        if let Some(step_m) = self.step_m {
+            in_range("step_m", step_m, f64::MIN_POSITIVE, f64::MAX, "finite and positive")?;
+        }
         in_range("max_depth", self.max_depth as f64, 1.0, f64::MAX, "at least 1")?;
         Ok(())
     }
@@ -128,6 +133,7 @@ impl<D: Domain> Extender<'_, D> {
         let mut reached = Vec::new();
         let mut blocked: Option<(usize, Blame)> = None;
         let mut cut = None;
+        let mut left_m = options.step_m.unwrap_or(f64::INFINITY);
         for index in 0..e.instances.len() {
             if interrupt.stop().is_some() {
                 cut = Some(index);
@@ -156,6 +162,14 @@ impl<D: Domain> Extender<'_, D> {
                 instance = Arc::new(around);
                 free = problem.validity().free_prefix(m, &instance, start);
             }
+            let length_m = instance.motion.length();
+            if free.fraction * length_m > left_m {
+                // What blocks it farther on is out of the reach of this extension.
+                discretise(m, &instance, primitive, left_m / length_m, options.spacing_m, start, &mut reached);
+                cut = Some(index + 1);
+                break;
+            }
+            left_m -= length_m;
             discretise(m, &instance, primitive, free.fraction, options.spacing_m, start, &mut reached);
             let is_short = free.fraction.is_nan() || free.fraction < 1.0;
             if let Some(blame) = free.blame.or_else(|| is_short.then(unexplained)) {
@@ -248,6 +262,8 @@ fn discretise<D: Domain>(
     // Also one step for a length or spacing that is not a number.
     let wanted = (instance.motion.length() * fraction / spacing_m).ceil();
     let steps = if wanted > 1.0 { wanted.min(MAX_STEPS) } else { 1.0 };
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in [1, MAX_STEPS]")]
+    reached.reserve(steps as usize);
     let mut i = 1.0;
     while i <= steps {
         let t = if i >= steps { fraction } else { fraction * i / steps };

@@ -5,9 +5,11 @@ use std::fmt::{self, Debug};
 use crate::domain::Domain;
 use crate::state::{ComponentSet, ObjectId, State};
 
+pub mod reversed;
 pub mod straight;
 pub mod waypoints;
 
+pub use reversed::Reversed;
 pub use straight::Straight;
 pub use waypoints::Waypoints;
 

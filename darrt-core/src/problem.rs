@@ -1,23 +1,51 @@
 //! A planning problem, everything checked once at construction.
 
+use std::sync::Arc;
+
 use crate::domain::Domain;
 use crate::error::Error;
 use crate::goal::Goal;
+use crate::plan::Plan;
 use crate::primitive::Primitive;
 use crate::random::{Purpose, stream};
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 use crate::validity::Validity;
-use crate::verify::Verifier;
+use crate::verify::{Refusal, Verifier};
 
 /// The input of Algorithm 1: M, B, A, `c_I` and G, and the judge of the result.
+///
+/// Clones share everything but the start.
 pub struct Problem<D: Domain> {
-    domain: D,
+    domain: Arc<D>,
     start: State<D>,
-    goal: Box<dyn Goal<D>>,
-    primitives: Vec<Box<dyn Primitive<D>>>,
-    validity: Box<dyn Validity<D>>,
-    verifier: Box<dyn Verifier<D>>,
+    goal: Arc<dyn Goal<D>>,
+    primitives: Arc<[Box<dyn Primitive<D>>]>,
+    validity: Arc<dyn Validity<D>>,
+    verifier: Arc<dyn Verifier<D>>,
+}
+
+impl<D: Domain> Clone for Problem<D> {
+    fn clone(&self) -> Self {
+        Self {
+            domain: Arc::clone(&self.domain),
+            start: self.start.clone(),
+            goal: Arc::clone(&self.goal),
+            primitives: Arc::clone(&self.primitives),
+            validity: Arc::clone(&self.validity),
+            verifier: Arc::clone(&self.verifier),
+        }
+    }
+}
+
+/// Accepts every plan.
+#[derive(Debug)]
+struct Unjudged;
+
+impl<D: Domain> Verifier<D> for Unjudged {
+    fn verify(&self, _: &D, _: &State<D>, _: &dyn Goal<D>, _: &Plan<D>) -> Result<(), Refusal> {
+        Ok(())
+    }
 }
 
 /// The parts of a [`Problem`], by name.
@@ -67,7 +95,30 @@ impl<D: Domain> Problem<D> {
                 target.check(&domain)?;
             }
         }
-        Ok(Self { domain, start, goal, primitives, validity, verifier })
+        Ok(Self {
+            domain: Arc::new(domain),
+            start,
+            goal: goal.into(),
+            primitives: primitives.into(),
+            validity: validity.into(),
+            verifier: verifier.into(),
+        })
+    }
+
+    /// A part of this problem for a search of its own: from `start` to `goal`, and whatever leads there is accepted. What is
+    /// put together from such parts must be judged as a whole.
+    pub(crate) fn part(&self, start: State<D>, goal: Arc<dyn Goal<D>>) -> Self {
+        Self { start, goal, verifier: Arc::new(Unjudged), ..self.clone() }
+    }
+
+    /// The same with other rules.
+    pub(crate) fn under(&self, validity: Arc<dyn Validity<D>>) -> Self {
+        Self { validity, ..self.clone() }
+    }
+
+    /// G, to be shared.
+    pub(crate) fn shared_goal(&self) -> Arc<dyn Goal<D>> {
+        Arc::clone(&self.goal)
     }
 
     /// M.

@@ -18,6 +18,8 @@ pub enum Purpose {
     Attempt,
     /// Looking for a shorter plan.
     Shorten,
+    /// Drawing a state of the goal.
+    Goal,
 }
 
 /// The generator for one purpose in one iteration of one attempt.

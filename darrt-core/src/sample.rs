@@ -6,22 +6,38 @@ use crate::domain::Domain;
 use crate::goal::Goal;
 use crate::partial::PartialState;
 use crate::space::{ComponentSpace, GroupSet};
-use crate::state::{ObjectId, RobotConfig};
+use crate::state::{ObjectId, RobotConfig, State};
 
+pub mod frontier;
 pub mod full;
 pub mod goal_biased;
+pub mod placed;
 pub mod random_subset;
 pub mod robot_or_objects;
 
+pub use frontier::Frontier;
 pub use full::Full;
 pub use goal_biased::GoalBiased;
+pub use placed::Placed;
 pub use random_subset::RandomSubset;
 pub use robot_or_objects::RobotOrObjects;
 
 /// Draws the targets that the tree is extended towards.
+///
+/// # Laws
+/// Pure but for `rng`, and for what it has learnt: the same generator gives the same sample.
 pub trait Sampler<D: Domain>: Send + Sync {
     /// A target; every named component lies in its space.
     fn sample(&self, m: &D, goal: &dyn Goal<D>, rng: &mut dyn Rng) -> PartialState<D>;
+
+    /// For a sampler that learns: one that knows nothing yet, for one attempt alone. Attempts must not learn from each
+    /// other, because which runs first depends on the threads. `None`: it does not learn.
+    fn for_one_attempt(&self) -> Option<Box<dyn Sampler<D>>> {
+        None
+    }
+
+    /// An extension towards `to` was blocked at `stopped`.
+    fn learn_block(&mut self, _m: &D, _stopped: &State<D>, _to: &PartialState<D>) {}
 }
 
 /// `s` with a random configuration for the whole robot.

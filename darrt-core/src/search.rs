@@ -1,4 +1,12 @@
 //! DARRT (Algorithm 1 of the paper): one attempt from the initial state.
+//!
+//! | variant | what is different |
+//! |---|---|
+//! | [`Darrt`] | nothing: Algorithm 1 |
+//! | [`connect`] | a second tree grows backwards from the goal |
+//! | [`hierarchical`] | the objects are planned first, as if the robot could pass through everything |
+//!
+//! All are a [`Planner`], made by [`Algorithm::planner`], and run by [`solve_with`](crate::solve::solve_with).
 
 use crate::budget::{Interrupt, Stop};
 use crate::distance::Distance;
@@ -17,6 +25,12 @@ use crate::state::State;
 use crate::tree::{Edge, NodeId, Tree};
 use crate::validity::Blame;
 use crate::verify::{Refusal, Solution};
+
+mod algorithm;
+pub mod connect;
+pub mod hierarchical;
+
+pub use algorithm::{Algorithm, Planner, Start};
 
 /// The parts of the search that are variants of one trait each.
 pub struct Strategy<D: Domain> {
@@ -43,10 +57,11 @@ impl<D: Domain> std::fmt::Debug for Strategy<D> {
 }
 
 /// One attempt: a tree that grows from the initial state.
-#[derive(Debug)]
 pub struct Darrt<'p, D: Domain> {
-    problem: &'p Problem<D>,
+    problem: Problem<D>,
     strategy: &'p Strategy<D>,
+    /// The sampler of this attempt alone, if it learns.
+    learner: Option<Box<dyn Sampler<D>>>,
     interrupt: Interrupt<'p>,
     tree: Tree<D>,
     accounts: Accounts,
@@ -56,6 +71,26 @@ pub struct Darrt<'p, D: Domain> {
     node_limit: usize,
     goal_sample: Option<PartialState<D>>,
     nearest_to_goal: f64,
+}
+
+// Not derived: a sampler is not printable.
+impl<D: Domain> std::fmt::Debug for Darrt<'_, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Darrt")
+            .field("attempt", &self.attempt)
+            .field("iteration", &self.iteration)
+            .field("nodes", &self.tree.len())
+            .finish_non_exhaustive()
+    }
+}
+
+/// What an extension of a node did to the tree.
+struct Grown<D: Domain> {
+    step: Step<D>,
+    /// The last node that it added; the node itself if it added none.
+    last: NodeId,
+    /// Did it meet its target?
+    is_met: bool,
 }
 
 /// What one iteration did.
@@ -84,15 +119,16 @@ enum Unproved<D: Domain> {
 
 impl<'p, D: Domain> Darrt<'p, D> {
     /// `V <- {c_I}`. Random choices are keyed by `(seed, attempt, iteration)`.
-    pub fn new(problem: &'p Problem<D>, strategy: &'p Strategy<D>, seed: u64, attempt: u64, node_limit: usize) -> Self {
+    pub fn new(problem: &Problem<D>, strategy: &'p Strategy<D>, seed: u64, attempt: u64, node_limit: usize) -> Self {
         let names = problem.primitives().iter().map(|p| p.name()).collect();
         let mut rng = stream(seed, attempt, 0, Purpose::Attempt);
         let goal_sample = problem.goal().sample(problem.domain(), &mut rng);
         let mut darrt = Self {
-            problem,
+            problem: problem.clone(),
             strategy,
+            learner: strategy.sampler.for_one_attempt(),
             interrupt: Interrupt::NEVER,
-            tree: Tree::rooted_at(problem.start().clone()),
+            tree: Tree::rooted_at(problem.domain(), problem.start().clone()),
             accounts: Accounts::new(names),
             seed,
             attempt,
@@ -111,22 +147,41 @@ impl<'p, D: Domain> Darrt<'p, D> {
         Self { interrupt, ..self }
     }
 
-    fn extender(&self) -> Extender<'p, D> {
-        let Self { problem, strategy, interrupt, .. } = *self;
+    fn extender(&self) -> Extender<'_, D> {
+        let Self { problem, strategy, interrupt, .. } = self;
+        let interrupt = *interrupt;
         Extender { problem, options: &strategy.extend, reroute: strategy.reroute.as_deref(), interrupt }
     }
 
     /// One iteration of the loop of Algorithm 1.
     pub fn step(&mut self) -> Step<D> {
-        let m = self.problem.domain();
+        let s = self.draw();
+        let t = self.nearest(&s);
+        self.grow(t, &s).step
+    }
+
+    /// Begins an iteration, and draws its sample.
+    fn draw(&mut self) -> PartialState<D> {
         self.iteration += 1;
         let draw = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Sample);
-        let choose = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Extend);
+        let sampler = self.learner.as_ref().unwrap_or(&self.strategy.sampler);
+        sampler.sample(self.problem.domain(), self.problem.goal(), draw)
+    }
 
-        let s = self.strategy.sampler.sample(m, self.problem.goal(), draw);
-        let t = self.strategy.distance.nearest(m, &self.tree, &s).unwrap_or(Tree::<D>::ROOT);
+    fn nearest(&self, s: &PartialState<D>) -> NodeId {
+        let nearest = self.strategy.distance.nearest(self.problem.domain(), &self.tree, s);
+        nearest.unwrap_or(Tree::<D>::ROOT)
+    }
+
+    /// Extends node `t` towards `s`, and takes in what is reached.
+    fn grow(&mut self, t: NodeId, s: &PartialState<D>) -> Grown<D> {
+        let choose = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Extend);
         let from = self.tree.node(t).map_or(self.problem.start(), |node| &node.state);
-        let extension = self.extender().extend(from, &s, choose);
+        let extension = self.extender().extend(from, s, choose);
+        let m = self.problem.domain();
+        if let (Some(learner), Some(_)) = (&mut self.learner, &extension.blame) {
+            learner.learn_block(m, extension.reached.last().map_or(from, |reached| &reached.state), s);
+        }
         let (is_met, buckets) = (extension.is_met, extension.buckets.clone());
         self.tree.penalise(t, self.strategy.try_penalty_m);
         let step = self.absorb(t, extension);
@@ -134,7 +189,8 @@ impl<'p, D: Domain> Darrt<'p, D> {
         if let Some((removed, blame)) = &step.withdrawn {
             self.accounts.withdraw(*removed, blame);
         }
-        step
+        let last = if step.added > 0 { self.tree.last() } else { t };
+        Grown { step, last, is_met }
     }
 
     /// The empty plan, if the start lies in the goal and the verifier agrees.
@@ -154,7 +210,11 @@ impl<'p, D: Domain> Darrt<'p, D> {
             self.note_distance_to_goal(&reached.state);
             let is_goal = self.problem.goal().is_satisfied(self.problem.domain(), &reached.state);
             let edge = Edge { parent, instance: reached.instance, t: reached.t, primitive: reached.primitive };
-            let id = if self.tree.len() < self.node_limit { self.tree.add(reached.state, edge) } else { None };
+            let id = if self.tree.len() < self.node_limit {
+                self.tree.add(self.problem.domain(), reached.state, edge)
+            } else {
+                None
+            };
             let Some(id) = id else {
                 step.stop = Some(Stop::NodeLimit);
                 return step;
@@ -165,7 +225,8 @@ impl<'p, D: Domain> Darrt<'p, D> {
                 match self.prove(id) {
                     Ok(solution) => step.solution = Some(solution),
                     Err(Unproved::Unsettled(Unsettled::Blocked(instance, blame))) => {
-                        step.withdrawn = Some((self.tree.prune(id, &instance), blame));
+                        let removed = self.tree.prune(self.problem.domain(), id, &instance);
+                        step.withdrawn = Some((removed, blame));
                     }
                     Err(unproved) => {
                         // A refused state must not stay: nothing would be nearer to the goal, and every
@@ -190,7 +251,11 @@ impl<'p, D: Domain> Darrt<'p, D> {
     /// A shorter plan if one can be had, else the plan to this node.
     fn prove(&self, node: NodeId) -> Result<Solution<D>, Unproved<D>> {
         let lost = || Refusal { step: None, at: 0.0, reason: "the tree has no such node".to_owned() };
-        let plan = Plan::to_node(&self.tree, node).ok_or_else(|| Unproved::Refused(lost()))?;
+        self.prove_plan(Plan::to_node(&self.tree, node).ok_or_else(|| Unproved::Refused(lost()))?)
+    }
+
+    /// Has a plan verified, made shorter if it can be, its motions judged if that was put off.
+    fn prove_plan(&self, plan: Plan<D>) -> Result<Solution<D>, Unproved<D>> {
         let rng = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Shorten);
         let extender = self.extender();
         // A shorter plan that the verifier refuses is no reason to give up the longer one.
@@ -207,7 +272,7 @@ impl<'p, D: Domain> Darrt<'p, D> {
         if self.interrupt.stop() == Some(Stop::Cancelled) {
             return Err(Refusal { step: None, at: 0.0, reason: "cancelled".to_owned() });
         }
-        let p = self.problem;
+        let p = &self.problem;
         Solution::prove(p.domain(), p.start(), p.goal(), p.verifier(), plan)
     }
 
@@ -215,6 +280,24 @@ impl<'p, D: Domain> Darrt<'p, D> {
         if let Some(goal) = &self.goal_sample {
             let d = self.strategy.distance.distance(self.problem.domain(), state, goal);
             self.nearest_to_goal = self.nearest_to_goal.min(d);
+        }
+    }
+
+    /// Counts a plan to `node` and beyond that is no solution; takes back what led to a motion that is blocked, and says how
+    /// many nodes those were.
+    fn note_unproved(&mut self, unproved: Unproved<D>, node: NodeId, step: &mut Step<D>) -> usize {
+        match unproved {
+            Unproved::Refused(refusal) => {
+                self.accounts.refused += 1;
+                step.refusal = Some(refusal);
+                0
+            }
+            Unproved::Unsettled(Unsettled::Blocked(instance, blame)) => {
+                let removed = self.tree.prune(self.problem.domain(), node, &instance);
+                self.accounts.withdraw(removed, &blame);
+                removed
+            }
+            Unproved::Unsettled(Unsettled::Cancelled) => 0,
         }
     }
 

@@ -3,6 +3,13 @@
 //! Attempts are numbered and independent; each has its own random streams and its own share of the
 //! iterations. The result is that of the lowest-numbered attempt that solves, so it is the same on any
 //! number of threads.
+//!
+//! | way of solving | what is different |
+//! |---|---|
+//! | [`solve`] | Algorithm 1, until the first solution |
+//! | [`solve_with`], one [`Member`] | another [`Algorithm`] |
+//! | [`solve_with`], several members | a portfolio: the attempts take the members in turn |
+//! | [`solve_with`], [`Until::BudgetEnds`] | anytime: attempts go on, and the cheapest solution is the result |
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -13,8 +20,9 @@ use crate::budget::{Budget, Cancel, Clock, Interrupt, Stop};
 use crate::domain::Domain;
 use crate::observe::accounts::Accounts;
 use crate::observe::{Event, Observer};
+use crate::plan::Plan;
 use crate::problem::Problem;
-use crate::search::{Darrt, Strategy};
+use crate::search::{Algorithm, Planner, Start, Strategy};
 use crate::verify::{Refusal, Solution};
 
 /// How [`solve`] works.
@@ -34,6 +42,64 @@ impl Default for SolveOptions {
     fn default() -> Self {
         Self { seed: 0, budget: Budget::default(), restart_iterations: None, threads: 1 }
     }
+}
+
+/// What an attempt is made with.
+pub struct Member<'a, D: Domain> {
+    /// Which search.
+    pub algorithm: Algorithm,
+    /// Its sampler, distance and so on.
+    pub strategy: &'a Strategy<D>,
+}
+
+impl<D: Domain> Clone for Member<'_, D> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<D: Domain> Copy for Member<'_, D> {}
+
+impl<D: Domain> fmt::Debug for Member<'_, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Member").field("algorithm", &self.algorithm).field("strategy", self.strategy).finish()
+    }
+}
+
+/// What makes one solution better than another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cost {
+    /// Fewer steps; among equals the shorter travel.
+    Steps,
+    /// Fewer metres of travel; among equals the fewer steps.
+    Travel,
+}
+
+impl Cost {
+    /// The cost of a plan: the less in the order of the pair, the better.
+    pub fn of<D: Domain>(self, plan: &Plan<D>) -> (f64, f64) {
+        let (steps, metres) = (plan.steps().len() as f64, plan.length());
+        match self {
+            Self::Steps => (steps, metres),
+            Self::Travel => (metres, steps),
+        }
+    }
+
+    fn is_less<D: Domain>(self, a: &Solution<D>, b: &Solution<D>) -> bool {
+        let ((a, second), (b, other)) = (self.of(a.plan()), self.of(b.plan()));
+        a.total_cmp(&b).then(second.total_cmp(&other)).is_lt()
+    }
+}
+
+/// When solving ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Until {
+    /// With the solution of the lowest-numbered attempt that finds one.
+    #[default]
+    Solved,
+    /// With the budget; the result is the cheapest of all solutions, of equally cheap ones that of the lowest attempt. More
+    /// budget never gives a dearer plan. Needs restarts: an attempt ends with its solution.
+    BudgetEnds(Cost),
 }
 
 /// How it ended. Stopping without a solution is a status, not an error.
@@ -95,7 +161,8 @@ struct Found<D: Domain> {
 
 struct Shared<'a, D: Domain> {
     problem: &'a Problem<D>,
-    strategy: &'a Strategy<D>,
+    members: &'a [Member<'a, D>],
+    until: Until,
     options: &'a SolveOptions,
     clock: Clock,
     /// Set by an observer; the caller's own token is not touched.
@@ -108,16 +175,30 @@ struct Shared<'a, D: Domain> {
     done: Mutex<Vec<Attempt<D>>>,
 }
 
-/// Solves `problem`, or says why not.
+/// Solves `problem` by Algorithm 1, or says why not.
 pub fn solve<D: Domain>(
     problem: &Problem<D>,
     strategy: &Strategy<D>,
     options: &SolveOptions,
     observer: &mut dyn Observer,
 ) -> Outcome<D> {
+    let members = [Member { algorithm: Algorithm::Darrt, strategy }];
+    solve_with(problem, &members, Until::Solved, options, observer)
+}
+
+/// Solves `problem` by the searches of `members`: attempt `n` is made by member `n` modulo their number. Without members
+/// nothing is tried, and the outcome says that no iteration was left.
+pub fn solve_with<D: Domain>(
+    problem: &Problem<D>,
+    members: &[Member<'_, D>],
+    until: Until,
+    options: &SolveOptions,
+    observer: &mut dyn Observer,
+) -> Outcome<D> {
     let shared = Shared {
         problem,
-        strategy,
+        members,
+        until,
         options,
         clock: Clock::start(&options.budget),
         halt: Cancel::new(),
@@ -148,11 +229,13 @@ impl<D: Domain> Shared<'_, D> {
             if number > 0 && (self.is_overtaken(number) || self.stop().is_some()) {
                 return;
             }
-            let attempt = self.attempt(number, share);
-            if attempt.solution.is_some() {
+            let Some(attempt) = self.attempt(number, share) else { return };
+            let improves = self.until != Until::Solved;
+            if attempt.solution.is_some() && !improves {
                 self.solved.fetch_min(number, Ordering::SeqCst);
             }
             let goes_on = matches!(attempt.stop, Stop::Restart)
+                || (attempt.stop == Stop::Solved && improves)
                 || (attempt.stop == Stop::NodeLimit && self.options.restart_iterations.is_some());
             if let Ok(mut done) = self.done.lock() {
                 done.push(attempt);
@@ -196,40 +279,48 @@ impl<D: Domain> Shared<'_, D> {
         }
     }
 
-    fn attempt(&self, number: u64, share: u64) -> Attempt<D> {
+    /// The member whose turn it is.
+    fn member(&self, number: u64) -> Option<&Member<'_, D>> {
+        let turn = number.checked_rem(self.members.len() as u64)?;
+        self.members.get(usize::try_from(turn).ok()?)
+    }
+
+    fn attempt(&self, number: u64, share: u64) -> Option<Attempt<D>> {
+        let Member { algorithm, strategy } = *self.member(number)?;
         let limit = self.options.budget.nodes.unwrap_or(usize::MAX);
         let ask = || self.stop().or_else(|| self.is_overtaken(number).then_some(Stop::Overtaken));
-        let darrt = Darrt::new(self.problem, self.strategy, self.options.seed, number, limit);
-        let mut darrt = darrt.interrupted_by(Interrupt::new(&ask));
+        let (seed, interrupt) = (self.options.seed, Interrupt::new(&ask));
+        let start = Start { seed, attempt: number, node_limit: limit, interrupt };
+        let mut planner = algorithm.planner(self.problem, strategy, start);
         let mut found = Found { solution: None, last_refusal: None };
         self.tell(&Event::AttemptStarted { attempt: number });
-        match darrt.prove_start() {
+        match planner.prove_start() {
             Some(Ok(solution)) => found.solution = Some(solution),
             Some(Err(refusal)) => found.last_refusal = Some(self.tell_refusal(number, &refusal)),
             None => {}
         }
         let stop = match found.solution {
             Some(_) => Stop::Solved,
-            None => self.run(number, share, &mut darrt, &mut found),
+            None => self.run(number, share, &mut *planner, &mut found),
         };
         if stop == Stop::Solved {
-            self.tell(&Event::Solved { attempt: number, iteration: darrt.iteration() });
+            self.tell(&Event::Solved { attempt: number, iteration: planner.iteration() });
         }
         self.tell(&Event::AttemptEnded { attempt: number, stop });
-        Attempt {
+        Some(Attempt {
             number,
             solution: found.solution,
             stop,
-            iterations: darrt.iteration(),
-            nodes: darrt.tree().len(),
-            nearest_to_goal: darrt.nearest_to_goal(),
-            accounts: darrt.accounts().clone(),
+            iterations: planner.iteration(),
+            nodes: planner.nodes(),
+            nearest_to_goal: planner.nearest_to_goal(),
+            accounts: planner.accounts(),
             last_refusal: found.last_refusal,
-        }
+        })
     }
 
     /// Steps until something ends the attempt.
-    fn run(&self, number: u64, share: u64, darrt: &mut Darrt<'_, D>, found: &mut Found<D>) -> Stop {
+    fn run(&self, number: u64, share: u64, planner: &mut (dyn Planner<D> + '_), found: &mut Found<D>) -> Stop {
         loop {
             if let Some(stop) = self.stop() {
                 return stop;
@@ -237,17 +328,17 @@ impl<D: Domain> Shared<'_, D> {
             if self.is_overtaken(number) {
                 return Stop::Overtaken;
             }
-            if darrt.iteration() >= share {
+            if planner.iteration() >= share {
                 let is_last = self.share(number + 1).is_none();
                 return if is_last { Stop::IterationLimit } else { Stop::Restart };
             }
-            let step = darrt.step();
+            let step = planner.step();
             self.tell(&Event::Iteration {
                 attempt: number,
-                iteration: darrt.iteration(),
-                nodes: darrt.tree().len(),
+                iteration: planner.iteration(),
+                nodes: planner.nodes(),
                 added: step.added,
-                nearest_to_goal: darrt.nearest_to_goal(),
+                nearest_to_goal: planner.nearest_to_goal(),
                 blame: step.blame.as_ref(),
             });
             if let Some(refusal) = step.refusal {
@@ -297,10 +388,21 @@ impl<D: Domain> Shared<'_, D> {
             outcome.nearest_to_goal = outcome.nearest_to_goal.min(attempt.nearest_to_goal);
             outcome.last_refusal = attempt.last_refusal.or(outcome.last_refusal);
             outcome.stop = attempt.stop;
-            if attempt.solution.is_some() {
-                outcome.solution = attempt.solution;
-                break;
+            match (attempt.solution, self.until) {
+                (Some(solution), Until::Solved) => {
+                    outcome.solution = Some(solution);
+                    break;
+                }
+                (Some(solution), Until::BudgetEnds(cost)) => {
+                    if outcome.solution.as_ref().is_none_or(|best| cost.is_less(&solution, best)) {
+                        outcome.solution = Some(solution);
+                    }
+                }
+                (None, _) => {}
             }
+        }
+        if outcome.solution.is_some() {
+            outcome.stop = Stop::Solved;
         }
         if outcome.solution.is_none() {
             outcome.stop = cut_short.unwrap_or(outcome.stop);

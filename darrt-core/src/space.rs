@@ -82,6 +82,15 @@ impl GroupSet {
     }
 }
 
+/// A kind of place at which an object can be drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Where it stands on something.
+    OnSupport,
+    /// Where it stands close to an edge of what it stands on.
+    SupportEdge,
+}
+
 /// Configuration space of one movable component, `m` in `{R, o_1 ... o_n}` (paper section 3).
 ///
 /// # Laws
@@ -89,6 +98,8 @@ impl GroupSet {
 /// - `interpolate(a, b, 0.0) == a` and `interpolate(a, b, 1.0) == b`, bit for bit; in between it stays in
 ///   the space and its distance to `a` never shrinks.
 /// - `sample` is contained in the space.
+/// - Between the shadows of two configurations, each coordinate of the groups that `overlay` takes over counted, lie at most
+///   as many metres as between the first and the overlay.
 /// - `overlay(from, target, all groups) == target` and `overlay(from, target, none) == from`.
 ///
 /// # Example
@@ -130,6 +141,11 @@ pub trait ComponentSpace: Send + Sync {
     /// A random configuration.
     fn sample(&self, rng: &mut dyn Rng) -> Self::Config;
 
+    /// A random configuration at such a place; `None` if the space knows none.
+    fn sample_at(&self, _place: Place, _rng: &mut dyn Rng) -> Option<Self::Config> {
+        None
+    }
+
     /// The distance (in the unit of [`distance`](Self::distance)) up to which two configurations count as
     /// the same when a target is compared with a state. Default: a nanometre.
     fn tolerance(&self) -> f64 {
@@ -140,6 +156,11 @@ pub trait ComponentSpace: Send + Sync {
     fn groups(&self) -> GroupSet {
         GroupSet::first(1)
     }
+
+    /// Calls `mark` with the group and the value, in metres, of coordinates whose Euclidean distance is never above
+    /// [`distance`](Self::distance): always as many, in the same order, of the same groups. They let the search for the
+    /// nearest node pass over most of the tree. Default: none.
+    fn shadow(&self, _q: &Self::Config, _mark: &mut dyn FnMut(u32, f64)) {}
 
     /// `target` in the groups of `groups`, `from` in all others.
     fn overlay(&self, from: &Self::Config, target: &Self::Config, groups: GroupSet) -> Self::Config {

@@ -1,9 +1,11 @@
 //! V and its edges: an arena of states, each with its parent and the instance that led to it.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use crate::domain::Domain;
 use crate::motion::Instance;
+use crate::nearest::bounds::{Coordinates, coordinates, robot_width};
+use crate::nearest::mirror::{Mirror, push_frugally};
 use crate::state::State;
 
 /// Index of a node in its tree.
@@ -45,31 +47,41 @@ pub struct Node<D: Domain> {
     pub edge: Option<Edge<D>>,
     /// Which placement of the objects: nodes between which only the robot moved share one.
     placement: u32,
-    working_point: OnceLock<[f64; 3]>,
+    /// The node before it in the same placement.
+    before: Option<NodeId>,
+    working_point: [f64; 3],
 }
 
 impl<D: Domain> Node<D> {
-    fn new(state: State<D>, edge: Option<Edge<D>>, placement: u32) -> Self {
-        Self { state, edge, placement, working_point: OnceLock::new() }
-    }
-
-    /// Index of its placement in the tree.
-    pub(crate) fn placement(&self) -> usize {
-        self.placement as usize
-    }
-
-    /// The robot's working point, computed when it is first asked for.
-    pub fn working_point(&self, m: &D) -> [f64; 3] {
-        *self.working_point.get_or_init(|| m.working_point(&self.state.robot))
+    /// The robot's working point ([`Domain::working_point`]).
+    pub fn working_point(&self) -> [f64; 3] {
+        self.working_point
     }
 }
+
+/// The nodes in which the objects stand in the same way.
+#[derive(Debug, Clone, Copy)]
+struct Placement {
+    /// The last of its nodes; `None` if it was taken back.
+    last: Option<NodeId>,
+    count: u32,
+    /// Penalties since the mirror was last told.
+    untold: u32,
+}
+
+/// The mirror is told of a penalty when there have been this many for each node of the placement: what it knows may be too
+/// little, but never too much, and a placement of many nodes is dear to tell of.
+const TOLD_SHARE: u32 = 16;
 
 /// A tree of states rooted at the start.
 #[derive(Debug)]
 pub struct Tree<D: Domain> {
     nodes: Vec<Node<D>>,
+    placements: Vec<Placement>,
     /// By placement: metres added to every distance from there.
     penalties_m: Vec<f64>,
+    /// What bounds on distances are reckoned from; `None` since a penalty was negative or no number.
+    mirror: Option<Mirror>,
 }
 
 impl<D: Domain> Tree<D> {
@@ -77,73 +89,159 @@ impl<D: Domain> Tree<D> {
     pub const MAX_NODES: usize = u32::MAX as usize;
 
     /// The tree that holds only the start.
-    pub fn rooted_at(start: State<D>) -> Self {
-        Self { nodes: vec![Node::new(start, None, 0)], penalties_m: vec![0.0] }
+    pub fn rooted_at(m: &D, start: State<D>) -> Self {
+        let width = 3 * (1 + m.objects().len()) + robot_width(m, &start.robot);
+        let mut tree = Self {
+            nodes: Vec::new(),
+            placements: Vec::new(),
+            penalties_m: Vec::new(),
+            mirror: Some(Mirror::new(width)),
+        };
+        tree.open_placement();
+        tree.push(m, start, None, 0);
+        tree
     }
 
     /// The root.
     pub const ROOT: NodeId = NodeId(0);
 
     /// Adds a node. `None` if the tree is full.
-    pub fn add(&mut self, state: State<D>, edge: Edge<D>) -> Option<NodeId> {
+    pub fn add(&mut self, m: &D, state: State<D>, edge: Edge<D>) -> Option<NodeId> {
         let id = NodeId(u32::try_from(self.nodes.len()).ok()?);
         let parent = self.node(edge.parent)?;
-        let placement = if parent.state.objects == state.objects {
-            parent.placement
-        } else {
-            self.penalties_m.push(0.0);
-            u32::try_from(self.penalties_m.len() - 1).ok()?
-        };
-        self.nodes.push(Node::new(state, Some(edge), placement));
+        let placement = if parent.state.objects == state.objects { parent.placement } else { self.open_placement() };
+        self.push(m, state, Some(edge), placement);
         Some(id)
+    }
+
+    fn open_placement(&mut self) -> u32 {
+        push_frugally(&mut self.penalties_m, 0.0);
+        push_frugally(&mut self.placements, Placement { last: None, count: 0, untold: 0 });
+        // There are no more placements than nodes.
+        u32::try_from(self.placements.len() - 1).unwrap_or(u32::MAX)
+    }
+
+    fn push(&mut self, m: &D, state: State<D>, edge: Option<Edge<D>>, placement: u32) {
+        let working_point = m.working_point(&state.robot);
+        if let Some(mirror) = &mut self.mirror {
+            let mut all = Coordinates::new();
+            coordinates(m, &state, working_point, &mut all);
+            mirror.push(&all, placement, &self.penalties_m);
+        }
+        let id = u32::try_from(self.nodes.len()).map(NodeId).ok();
+        let before = self.placements.get_mut(placement as usize).and_then(|p| {
+            p.count += 1;
+            std::mem::replace(&mut p.last, id)
+        });
+        push_frugally(&mut self.nodes, Node { state, edge, placement, before, working_point });
     }
 
     /// Takes back the node that was added last; the root stays.
     pub fn remove_last(&mut self) {
-        if self.nodes.len() > 1 {
-            self.nodes.pop();
+        if self.nodes.len() <= 1 {
+            return;
+        }
+        if let Some(node) = self.nodes.pop()
+            && let Some(placement) = self.placements.get_mut(node.placement as usize)
+        {
+            placement.last = node.before;
+            placement.count -= 1;
+        }
+        if let Some(mirror) = &mut self.mirror {
+            mirror.pop(&self.penalties_m);
         }
     }
 
     /// Takes back the nodes from the first on the way to `last` that was reached by `instance`, with all that grew from
     /// them; the ids of all other nodes change, their order does not. Returns how many there were.
-    pub fn prune(&mut self, last: NodeId, instance: &Arc<Instance<D>>) -> usize {
-        let is_on = |edge: &Edge<D>| Arc::ptr_eq(&edge.instance, instance);
+    pub fn prune(&mut self, m: &D, last: NodeId, instance: &Arc<Instance<D>>) -> usize {
+        let is_on = |id: &NodeId| {
+            let edge = self.node(*id).and_then(|node| node.edge.as_ref());
+            edge.is_some_and(|edge| Arc::ptr_eq(&edge.instance, instance))
+        };
         let way = std::iter::successors(Some(last), |id| Some(self.node(*id)?.edge.as_ref()?.parent));
-        let on: Vec<NodeId> =
-            way.filter(|id| self.node(*id).and_then(|n| n.edge.as_ref()).is_some_and(is_on)).collect();
-        let Some(first) = on.last().map(|id| id.index()) else { return 0 };
-        let before = self.nodes.len();
-        // By old index: the new one; `None` for what is gone. Parents come before their children.
-        let mut kept: Vec<Option<NodeId>> = Vec::with_capacity(before);
-        let mut nodes = Vec::with_capacity(before);
-        for (index, mut node) in std::mem::take(&mut self.nodes).into_iter().enumerate() {
-            let parent = node.edge.as_ref().map(|edge| kept.get(edge.parent.index()).copied().flatten());
-            let id = u32::try_from(nodes.len()).ok().map(NodeId);
-            let id = if index == first || parent == Some(None) { None } else { id };
-            kept.push(id);
-            if id.is_some() {
-                if let (Some(edge), Some(Some(parent))) = (&mut node.edge, parent) {
-                    edge.parent = parent;
+        let Some(first) = way.filter(is_on).last() else { return 0 };
+        let Some(root) = self.node(Self::ROOT).map(|root| root.state.clone()) else { return 0 };
+        let old = std::mem::replace(self, Self::rooted_at(m, root));
+        let has_mirror = old.mirror.is_some();
+        // By old index: the new id; `None` for what is gone. Parents come before their children.
+        let mut kept = vec![Some(Self::ROOT)];
+        let before = old.nodes.len();
+        for (index, node) in old.nodes.into_iter().enumerate().skip(1) {
+            let parent = node.edge.as_ref().and_then(|edge| kept.get(edge.parent.index()).copied().flatten());
+            let id = match (parent, node.edge) {
+                (Some(parent), Some(edge)) if index != first.index() => {
+                    self.add(m, node.state, Edge { parent, ..edge })
                 }
-                nodes.push(node);
+                _ => None,
+            };
+            if let Some(new) = id.and_then(|id| self.node(id)).map(|new| new.placement as usize)
+                && let (Some(penalty_m), Some(known_m)) =
+                    (self.penalties_m.get_mut(new), old.penalties_m.get(node.placement as usize))
+            {
+                *penalty_m = *known_m;
             }
+            kept.push(id);
         }
-        self.nodes = nodes;
+        if let (Some(penalty_m), Some(known_m)) = (self.penalties_m.first_mut(), old.penalties_m.first()) {
+            *penalty_m = *known_m;
+        }
+        if !has_mirror {
+            self.mirror = None;
+        }
         before - self.nodes.len()
     }
 
-    /// Adds `metres` to the penalty of all nodes with the placement of this one.
+    /// Adds `metres`, at least 0, to the penalty of all nodes with the placement of this one.
     pub fn penalise(&mut self, id: NodeId, metres: f64) {
-        let placement = self.node(id).map(|node| node.placement as usize);
-        if let Some(penalty_m) = placement.and_then(|placement| self.penalties_m.get_mut(placement)) {
-            *penalty_m += metres;
+        let Some(placement) = self.node(id).map(|node| node.placement) else { return };
+        let at = placement as usize;
+        let (Some(penalty_m), Some(p)) = (self.penalties_m.get_mut(at), self.placements.get_mut(at)) else { return };
+        *penalty_m += metres;
+        if metres.is_nan() || metres < 0.0 {
+            self.mirror = None;
+        }
+        p.untold += 1;
+        if metres > 0.0 && p.untold.saturating_mul(TOLD_SHARE) >= p.count {
+            p.untold = 0;
+            let last = p.last;
+            self.tell_mirror(last);
+        }
+    }
+
+    /// Tells the mirror the penalty of `last` and of all nodes before it in the same placement.
+    fn tell_mirror(&mut self, last: Option<NodeId>) {
+        let Some(mirror) = &mut self.mirror else { return };
+        let (mut next, mut told) = (last, None);
+        while let Some(id) = next {
+            let block = mirror.block_of(id.0);
+            if block != told {
+                mirror.refresh_penalty(id.0, &self.penalties_m);
+                told = block;
+            }
+            next = self.nodes.get(id.index()).and_then(|node| node.before);
         }
     }
 
     /// Metres added to every distance from `node`, for the extensions that have already been made from its placement.
     pub fn penalty_m(&self, node: &Node<D>) -> f64 {
-        self.penalties_m.get(node.placement as usize).copied().unwrap_or(0.0)
+        self.penalty_at(node.placement)
+    }
+
+    pub(crate) fn penalty_at(&self, placement: u32) -> f64 {
+        self.penalties_m.get(placement as usize).copied().unwrap_or(0.0)
+    }
+
+    pub(crate) fn mirror(&self) -> Option<&Mirror> {
+        self.mirror.as_ref()
+    }
+
+    pub(crate) fn at(&self, index: u32) -> Option<&Node<D>> {
+        self.nodes.get(index as usize)
+    }
+
+    pub(crate) fn id_at(&self, index: u32) -> Option<NodeId> {
+        ((index as usize) < self.nodes.len()).then_some(NodeId(index))
     }
 
     /// A node; `None` if the id belongs to another tree.
@@ -151,9 +249,10 @@ impl<D: Domain> Tree<D> {
         self.nodes.get(id.index())
     }
 
-    /// How many placements of the objects there are.
-    pub(crate) fn placements(&self) -> usize {
-        self.penalties_m.len()
+    /// The node that was added last.
+    pub(crate) fn last(&self) -> NodeId {
+        // The arena never grows past u32::MAX nodes (see `add`).
+        NodeId(u32::try_from(self.nodes.len().saturating_sub(1)).unwrap_or(u32::MAX))
     }
 
     /// How many nodes.

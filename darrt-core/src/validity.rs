@@ -96,6 +96,12 @@ pub trait Validity<D: Domain>: Send + Sync {
     /// The [`Blame`].
     fn check(&self, m: &D, state: &State<D>, contacts: &D::Contacts) -> Result<(), Blame>;
 
+    /// The same rules for the objects alone, as if the robot could pass through everything: what the hierarchical search
+    /// plans with first. `None` if they cannot be told apart.
+    fn without_robot(&self) -> Option<Arc<dyn Validity<D>>> {
+        None
+    }
+
     /// How far is the motion of `instance` free? The whole motion is handed over so that the
     /// implementation may batch, bound and reorder; it must not allocate per state.
     fn free_prefix(&self, m: &D, instance: &Instance<D>, from: &State<D>) -> FreePrefix;

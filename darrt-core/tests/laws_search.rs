@@ -2,7 +2,7 @@
 #![cfg(feature = "testing")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test says no more than that it failed")]
 
-use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
+use darrt_core::distance::{ApproachVisit, Distance, Euclidean, ExactTour, GreedyVisit, Weighted};
 use darrt_core::domain::Domain;
 use darrt_core::goal::{AnyOf, Goal, Reach, Region};
 use darrt_core::laws::motion::component_travel;
@@ -13,7 +13,8 @@ use darrt_core::laws::{
 };
 use darrt_core::motion::{Straight, Waypoints};
 use darrt_core::partial::PartialState;
-use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler};
+use darrt_core::sample::{Frontier, Full, GoalBiased, Placed, RandomSubset, RobotOrObjects, Sampler};
+use darrt_core::space::Place;
 use darrt_core::state::{ObjectId, State};
 use darrt_core::testing::broken::bench::{Bench, Tag, state};
 use darrt_core::testing::puck::{Mode, Puck, PuckWorld};
@@ -25,6 +26,18 @@ const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_search.txt");
 fn pucks(count: usize) -> PuckWorld {
     let puck = |i| Puck { name: format!("puck {i}").into(), radius_m: 0.12, is_graspable: i % 2 == 0 };
     PuckWorld::new([4.0, 3.0], 0.15, (0..count).map(puck).collect()).unwrap()
+}
+
+/// Every distance of the core.
+fn all_distances<D: Domain>() -> Vec<Box<dyn Distance<D>>> {
+    vec![
+        Box::new(Euclidean),
+        Box::new(GreedyVisit),
+        Box::new(ExactTour),
+        Box::new(Weighted::sum(0.3, 2.0).unwrap()),
+        Box::new(Weighted::maximum(1.0, 0.7).unwrap()),
+        Box::new(ApproachVisit::new(Vec::new())),
+    ]
 }
 
 /// One generic check, on both domains.
@@ -79,7 +92,8 @@ mod checks {
     pub(super) fn distances<D: Domain>(m: &D, mode: D::Mode) {
         let s = states(m, mode);
         proptest!(config(96, REGRESSIONS), |(to in targets(m), here in s.clone(), there in s)| {
-            for distance in [&Euclidean as &dyn Distance<D>, &GreedyVisit, &ExactTour] {
+            for distance in all_distances() {
+                let distance = &*distance;
                 check_distance(m, distance, &here, &to, &there)?;
                 check_distance(m, distance, &to.overlay(m, &here), &to, &there)?;
             }
@@ -93,26 +107,43 @@ mod checks {
         proptest!(config(48, REGRESSIONS), |(to in targets(m), root in s, others in many)| {
             // Twins of the nodes make ties.
             let twice = others.iter().chain(&others).cloned();
-            let tree = tree_of(&root, twice);
-            for distance in [&Euclidean as &dyn Distance<D>, &GreedyVisit, &ExactTour] {
-                check_nearest(m, distance, &tree, &to)?;
+            let tree = tree_of(m, &root, twice);
+            for distance in all_distances() {
+                check_nearest(m, &*distance, &tree, &to)?;
             }
         });
     }
 
-    pub(super) fn samplers<D: Domain>(m: &D, _: D::Mode) {
+    pub(super) fn samplers<D: Domain>(m: &D, mode: D::Mode) {
         let full = PartialState::anywhere(m).with_robot(m, home(m));
         let goal = Reach::<D>::new(full);
         let biased = GoalBiased::new(RandomSubset, 0.3).unwrap();
         let subsets = RobotOrObjects::new(0.5, 0.5).unwrap();
         let boxed: Box<dyn Sampler<D>> = Box::new(RandomSubset);
-        let all = [&Full as &dyn Sampler<D>, &RandomSubset, &biased, &subsets, &boxed];
+        let standing = Placed::new(Full, Place::OnSupport, 0.5).unwrap();
+        let edge = Placed::new(RandomSubset, Place::SupportEdge, 1.0).unwrap();
+        let mut frontier = Frontier::new(RandomSubset, 0.5, 0.2).unwrap();
+        for i in 0..20 {
+            let rng = &mut darrt_core::random::stream(i, 0, 0, darrt_core::random::Purpose::Sample);
+            let target = Full.sample(m, &goal, rng);
+            let at = target.overlay(m, &anywhere(m, mode.clone()));
+            frontier.learn_block(m, &at, &target);
+        }
+        let all = [&Full as &dyn Sampler<D>, &RandomSubset, &biased, &subsets, &boxed, &standing, &edge, &frontier];
         for sampler in all {
             proptest!(config(48, REGRESSIONS), |(seed in seeds())| {
                 check_sampler(m, sampler, &goal, seed)?;
             });
             check_sampler_covers(m, sampler, &goal, 200, 1).unwrap();
         }
+    }
+
+    fn anywhere<D: Domain>(m: &D, mode: D::Mode) -> State<D> {
+        use darrt_core::random::{Purpose, stream};
+        use darrt_core::space::ComponentSpace;
+        let rng = &mut stream(9, 0, 0, Purpose::Sample);
+        let objects = m.objects().iter().map(|space| space.sample(rng)).collect();
+        State { robot: m.robot().sample(rng), objects, mode }
     }
 
     fn home<D: Domain>(m: &D) -> darrt_core::state::RobotConfig<D> {

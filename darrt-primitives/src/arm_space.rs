@@ -131,6 +131,19 @@ impl<J: JointVector> ComponentSpace for ArmSpace<J> {
         BASE.union(ARM)
     }
 
+    fn shadow(&self, q: &Configuration<J>, mark: &mut dyn FnMut(u32, f64)) {
+        self.base.shadow(&q.base, mark);
+        for (q, (limit, w)) in q.arm.as_ref().iter().zip(self.limits.iter().zip(&self.weights_m)) {
+            if limit.is_unlimited() {
+                // No chord is longer than its arc.
+                mark(1, w * q.cos());
+                mark(1, w * q.sin());
+            } else {
+                mark(1, w * q);
+            }
+        }
+    }
+
     fn overlay(&self, from: &Configuration<J>, target: &Configuration<J>, groups: GroupSet) -> Configuration<J> {
         Configuration {
             base: if groups.covers(BASE) { target.base } else { from.base },

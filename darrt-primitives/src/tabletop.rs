@@ -250,6 +250,14 @@ impl<M: Manipulator> Domain for Tabletop<M> {
         REACH_WEIGHT * (Vector3::from(working_point) - at.translation.vector).norm()
     }
 
+    fn object_point(&self, _: ObjectId, at: &Isometry3<f64>) -> [f64; 3] {
+        at.translation.vector.into()
+    }
+
+    fn reach_at_least(&self, _: ObjectId, gap_m: f64) -> f64 {
+        REACH_WEIGHT * gap_m
+    }
+
     fn hop(&self, from: (ObjectId, &Isometry3<f64>), to: (ObjectId, &Isometry3<f64>)) -> f64 {
         (from.1.translation.vector - to.1.translation.vector).norm()
     }

@@ -21,21 +21,18 @@ impl ExactTour {
 
 impl<D: Domain> Distance<D> for ExactTour {
     fn distance(&self, m: &D, from: &State<D>, to: &PartialState<D>) -> f64 {
-        exact_tour(m, &Departure { state: from, working_point: None }, to, f64::INFINITY)
+        exact_tour(m, &Departure { state: from, working_point: None }, to)
     }
 
     fn nearest(&self, m: &D, tree: &Tree<D>, to: &PartialState<D>) -> Option<NodeId> {
-        nearest_departure(m, tree, to, |from, bound| exact_tour(m, from, to, bound))
+        nearest_departure(m, tree, to, |from| exact_tour(m, from, to))
     }
 }
 
-fn exact_tour<D: Domain>(m: &D, from: &Departure<'_, D>, to: &PartialState<D>, bound: f64) -> f64 {
+fn exact_tour<D: Domain>(m: &D, from: &Departure<'_, D>, to: &PartialState<D>) -> f64 {
     let (open, ways) = open_objects(m, from.state, to);
     if open.len() > ExactTour::MAX_OBJECTS {
         return GreedyVisit.distance(m, from.state, to);
-    }
-    if ways >= bound {
-        return f64::INFINITY;
     }
     let open: SmallVec<[ObjectId; 8]> = open.iter().map(|(id, _)| *id).collect();
     ways + best_tour(m, from, to, &open, None, f64::INFINITY)

@@ -5,6 +5,8 @@ use smallvec::SmallVec;
 use super::Distance;
 use super::euclidean::object_travel;
 use crate::domain::Domain;
+use crate::nearest::bounds::{LANES, Lanes, Ways};
+use crate::nearest::pruned::nearest_pruned;
 use crate::partial::PartialState;
 use crate::space::ComponentSpace;
 use crate::state::{ObjectId, State};
@@ -17,11 +19,11 @@ pub struct GreedyVisit;
 
 impl<D: Domain> Distance<D> for GreedyVisit {
     fn distance(&self, m: &D, from: &State<D>, to: &PartialState<D>) -> f64 {
-        greedy_tour(m, &Departure { state: from, working_point: None }, to, f64::INFINITY)
+        greedy_tour(m, &Departure { state: from, working_point: None }, to)
     }
 
     fn nearest(&self, m: &D, tree: &Tree<D>, to: &PartialState<D>) -> Option<NodeId> {
-        nearest_departure(m, tree, to, |from, bound| greedy_tour(m, from, to, bound))
+        nearest_departure(m, tree, to, |from| greedy_tour(m, from, to))
     }
 }
 
@@ -31,34 +33,41 @@ pub(super) struct Departure<'a, D: Domain> {
     pub(super) working_point: Option<[f64; 3]>,
 }
 
-/// The node with the shortest tour, its penalty included; the lowest index wins a tie. `tour` may give up, with an infinite length, as soon as
-/// it is no shorter than its bound.
+/// The node with the shortest tour, its penalty included; the lowest index wins a tie.
 pub(super) fn nearest_departure<D: Domain>(
     m: &D,
     tree: &Tree<D>,
     to: &PartialState<D>,
-    tour: impl Fn(&Departure<'_, D>, f64) -> f64,
+    tour: impl Fn(&Departure<'_, D>) -> f64,
 ) -> Option<NodeId> {
-    // OPTIMIZATION: nodes of one placement share the ways of the objects, which often rule all of them out.
-    let mut ways: Vec<Option<f64>> = vec![None; tree.placements()];
-    let mut best: Option<(NodeId, f64)> = None;
-    for (id, node) in tree.iter() {
-        let bound = best.map_or(f64::INFINITY, |(_, least)| least);
-        let penalty_m = tree.penalty_m(node);
-        let least = match ways.get_mut(node.placement()) {
-            Some(slot) => *slot.get_or_insert_with(|| open_objects(m, &node.state, to).1) + penalty_m,
-            None => 0.0,
-        };
-        if best.is_some() && least >= bound {
-            continue;
-        }
-        let from = Departure { state: &node.state, working_point: Some(node.working_point(m)) };
-        let length = tour(&from, bound - penalty_m) + penalty_m;
-        if best.is_none_or(|(_, least)| length < least || (least.is_nan() && !length.is_nan())) {
-            best = Some((id, length));
+    nearest_pruned(m, tree, to, tour_at_least, |node| {
+        tour(&Departure { state: &node.state, working_point: Some(node.working_point()) })
+    })
+}
+
+/// Every tour has the ways of all open objects, and begins with the way to one of them.
+pub(super) fn tour_at_least(ways: &Ways, out: &mut Lanes) {
+    // The way to the nearest object, and the whole tour if none is open.
+    let (mut hop, mut alone) = ([f32::INFINITY; LANES], [0.0; LANES]);
+    let mut is_open = [false; LANES];
+    if let Some(robot_m) = &ways.robot_m {
+        alone = *robot_m;
+    }
+    *out = [0.0; LANES];
+    for object in &ways.objects {
+        for lane in 0..LANES {
+            let (way, reach) = (object.way_m[lane], object.reach_m[lane]);
+            // A way within the tolerance does not count; close above it is not certain.
+            let counts = way >= object.open_m;
+            out[lane] += if counts { way } else { 0.0 };
+            is_open[lane] |= counts;
+            hop[lane] = if reach < hop[lane] { reach } else { hop[lane] };
         }
     }
-    best.map(|(id, _)| id)
+    for lane in 0..LANES {
+        let first = if is_open[lane] || hop[lane] < alone[lane] { hop[lane] } else { alone[lane] };
+        out[lane] += first;
+    }
 }
 
 /// An object that is not at its target, and how far it is from there.
@@ -76,17 +85,14 @@ pub(super) fn open_objects<D: Domain>(m: &D, from: &State<D>, to: &PartialState<
     (open, sum)
 }
 
-fn greedy_tour<D: Domain>(m: &D, from: &Departure<'_, D>, to: &PartialState<D>, bound: f64) -> f64 {
+pub(super) fn greedy_tour<D: Domain>(m: &D, from: &Departure<'_, D>, to: &PartialState<D>) -> f64 {
     let (mut open, mut total) = open_objects(m, from.state, to);
     let mut last: Option<ObjectId> = None;
-    // OPTIMIZATION: the ways of the objects alone often rule a node out, before the robot is asked about.
-    while total < bound
-        && let Some((slot, hop)) = nearest_open(m, from, to, &open, last)
-    {
+    while let Some((slot, hop)) = nearest_open(m, from, to, &open, last) {
         last = Some(open.swap_remove(slot).0);
         total += hop;
     }
-    if total >= bound { f64::INFINITY } else { total + last_leg(m, from.state, to, last) }
+    total + last_leg(m, from.state, to, last)
 }
 
 /// Which of the `open` objects is closest to where the robot now is, and how far.

@@ -1,10 +1,11 @@
 //! Laws of [`Domain`], and those of its component spaces by name.
 
 use crate::domain::Domain;
+use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ObjectId, State};
 
 use super::space::{SpaceClaims, check_component_space};
-use super::{Broken, equal, measure};
+use super::{Broken, at_most, equal, measure};
 
 /// As many objects in every state as in the domain.
 pub const COUNT: &str = "domain.count: a state has one configuration per object of the domain";
@@ -12,13 +13,18 @@ pub const COUNT: &str = "domain.count: a state has one configuration per object 
 pub const REACH: &str = "domain.reach: reach is finite and not negative";
 /// Reach from a known working point.
 pub const REACH_FROM: &str = "domain.reach-from: reach_from at the robot's working point is reach, bit for bit";
+/// The point of an object moves no farther than the object.
+pub const POINT: &str = "domain.point: two points of an object lie no farther apart than its two configurations";
+/// A lower bound on reach.
+pub const REACH_AT_LEAST: &str =
+    "domain.reach-at-least: reach_at_least of the gap between working point and object is at most reach, and grows";
 /// Hop is a measure.
 pub const HOP: &str = "domain.hop: hop is finite and not negative";
 /// Names tell the components apart.
 pub const NAMES: &str = "domain.names: every component has a name of its own";
 
 /// The laws of this file.
-pub const LAWS: &[&str] = &[COUNT, REACH, REACH_FROM, HOP, NAMES];
+pub const LAWS: &[&str] = &[COUNT, REACH, REACH_FROM, POINT, REACH_AT_LEAST, HOP, NAMES];
 
 /// The laws of a domain and of all its component spaces, for three states, two parameters in `[0, 1]` and
 /// a seed.
@@ -66,6 +72,13 @@ fn names<D: Domain>(m: &D) -> Result<(), Broken> {
     Ok(())
 }
 
+/// Rounding that is forgiven, metres per metre.
+const SLACK: f64 = 1e-9;
+
+fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt()
+}
+
 fn travel<D: Domain>(m: &D, a: &State<D>, b: &State<D>) -> Result<(), Broken> {
     for (i, p) in a.objects.iter().enumerate() {
         let id = ObjectId::new(i);
@@ -74,6 +87,15 @@ fn travel<D: Domain>(m: &D, a: &State<D>, b: &State<D>) -> Result<(), Broken> {
             let metres = m.reach(robot, id, p);
             measure(REACH, metres).map_err(of)?;
             equal(REACH_FROM, &m.reach_from(m.working_point(robot), robot, id, p), &metres).map_err(of)?;
+            let gap_m = apart(m.working_point(robot), m.object_point(id, p));
+            let at_least = m.reach_at_least(id, gap_m);
+            at_most(REACH_AT_LEAST, at_least, metres, SLACK * (1.0 + metres)).map_err(of)?;
+            at_most(REACH_AT_LEAST, at_least, m.reach_at_least(id, 1.5 * gap_m), 0.0).map_err(of)?;
+        }
+        if let (Some(space), Some(q)) = (m.objects().get(i), b.object(id)) {
+            let metres = space.distance(p, q);
+            let points = apart(m.object_point(id, p), m.object_point(id, q));
+            at_most(POINT, points, metres, SLACK * (1.0 + metres)).map_err(of)?;
         }
         for (j, q) in b.objects.iter().enumerate() {
             measure(HOP, m.hop((id, p), (ObjectId::new(j), q))).map_err(of)?;

@@ -12,8 +12,7 @@ use crate::tree::{Edge, NodeId, Tree};
 use super::Broken;
 
 /// Faster searches agree with the linear scan.
-pub const LINEAR: &str =
-    "nearest.linear: nearest answers the node of least distance, the earliest one on a tie, as a linear scan does";
+pub const LINEAR: &str = "nearest.linear: nearest answers the node of least distance and penalty, the earliest on a tie, as a linear scan does";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[LINEAR];
@@ -30,8 +29,8 @@ pub fn check_nearest<D: Domain>(
 ) -> Result<(), Broken> {
     let mut best: Option<(usize, f64)> = None;
     for (id, node) in tree.iter() {
-        let metres = distance.distance(m, &node.state, to);
-        if best.is_none_or(|(_, least)| metres.total_cmp(&least).is_lt()) {
+        let metres = distance.distance(m, &node.state, to) + tree.penalty_m(node);
+        if best.is_none_or(|(_, least)| metres < least || (least.is_nan() && !metres.is_nan())) {
             best = Some((id.index(), metres));
         }
     }
@@ -49,8 +48,8 @@ pub fn check_nearest<D: Domain>(
 }
 
 /// A tree that holds `root` and then `others`, each a child of the root: something to search in.
-pub fn tree_of<D: Domain>(root: &State<D>, others: impl IntoIterator<Item = State<D>>) -> Tree<D> {
-    let mut tree = Tree::rooted_at(root.clone());
+pub fn tree_of<D: Domain>(m: &D, root: &State<D>, others: impl IntoIterator<Item = State<D>>) -> Tree<D> {
+    let mut tree = Tree::rooted_at(m, root.clone());
     for state in others {
         let states = vec![root.clone(), state.clone()];
         let Some(motion) = Waypoints::new(states, &[0.0], root.mode.clone()) else { continue };
@@ -63,7 +62,7 @@ pub fn tree_of<D: Domain>(root: &State<D>, others: impl IntoIterator<Item = Stat
             reversible: false,
         });
         // Only a tree of 2^32 nodes refuses another.
-        let _ = tree.add(state, Edge { parent: Tree::<D>::ROOT, instance, t: 1.0, primitive: 0 });
+        let _ = tree.add(m, state, Edge { parent: Tree::<D>::ROOT, instance, t: 1.0, primitive: 0 });
     }
     tree
 }

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use crate::random::{Purpose, stream};
 use crate::space::{ComponentSpace, GroupSet};
 
-use super::{Broken, at_most, ensure, identical, measure};
+use super::{Broken, at_most, ensure, equal, identical, measure};
 
 /// The configurations handed to a check must lie in the space.
 pub const GIVEN: &str = "space.given: the configurations given to the check lie in the space";
@@ -37,6 +37,10 @@ pub const SAMPLE_INSIDE: &str = "space.sample-inside: samples lie in the space";
 pub const SAMPLE_SEEDED: &str = "space.sample-seeded: the same generator gives the same sample";
 /// Sampling: covering.
 pub const SAMPLE_COVERS: &str = "space.sample-covers: samples come near every configuration of the space";
+/// Shadow: a lower bound.
+pub const SHADOW: &str = "space.shadow: over the coordinates of any groups, two shadows lie no farther apart than the overlay of these groups";
+/// Shadow: alike.
+pub const SHADOW_ALIKE: &str = "space.shadow-alike: every shadow has the same groups in the same order";
 /// Overlay: all and none.
 pub const OVERLAY_ENDS: &str = "space.overlay-ends: overlay of all groups is the target, of no group the beginning";
 /// Overlay: groups are independent.
@@ -62,6 +66,8 @@ pub const LAWS: &[&str] = &[
     SAMPLE_INSIDE,
     SAMPLE_SEEDED,
     SAMPLE_COVERS,
+    SHADOW,
+    SHADOW_ALIKE,
     OVERLAY_ENDS,
     OVERLAY_GROUPS,
     OVERLAY_INSIDE,
@@ -109,11 +115,32 @@ pub fn check_component_space<S: ComponentSpace>(
         metric(space, claims, configs)?;
         interpolation(space, claims, [a, b], ts)?;
         samples(space, seed)?;
-        overlays(space, [a, b, c])
+        overlays(space, [a, b, c])?;
+        shadows(space, claims, [a, b])
     };
     check().map_err(|broken| {
         broken.replayed_by(|| format!("check_component_space({claims:?}, [&{a:?}, &{b:?}, &{c:?}], {ts:?}, {seed})"))
     })
+}
+
+fn shadow_of<S: ComponentSpace>(space: &S, q: &S::Config) -> Vec<(u32, f64)> {
+    let mut all = Vec::new();
+    space.shadow(q, &mut |group, x| all.push((group, x)));
+    all
+}
+
+fn shadows<S: ComponentSpace>(space: &S, claims: &SpaceClaims, [a, b]: [&S::Config; 2]) -> Result<(), Broken> {
+    let (of_a, of_b) = (shadow_of(space, a), shadow_of(space, b));
+    let groups = |all: &[(u32, f64)]| all.iter().map(|(group, _)| *group).collect::<Vec<_>>();
+    equal(SHADOW_ALIKE, &groups(&of_a), &groups(&of_b))?;
+    let single = (0..32).map(GroupSet::only).filter(|group| space.groups().covers(*group));
+    for named in single.chain([space.groups()]) {
+        let pairs = of_a.iter().zip(&of_b).filter(|((group, _), _)| named.contains(*group));
+        let apart = pairs.map(|((_, x), (_, y))| (x - y).powi(2)).sum::<f64>().sqrt();
+        let metres = space.distance(a, &space.overlay(a, b, named));
+        at_most(SHADOW, apart, metres, claims.slack_at(metres) * 1e-3)?;
+    }
+    Ok(())
 }
 
 fn metric<S: ComponentSpace>(space: &S, claims: &SpaceClaims, [a, b, c]: [&S::Config; 3]) -> Result<(), Broken> {

@@ -7,6 +7,7 @@ use crate::domain::Domain;
 use crate::error::{Error, in_range};
 use crate::goal::Goal;
 use crate::partial::PartialState;
+use crate::state::State;
 
 /// Samples the goal with probability `bias`, else asks the inner sampler.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,10 +35,26 @@ impl<D: Domain, S: Sampler<D>> Sampler<D> for GoalBiased<S> {
         }
         self.inner.sample(m, goal, rng)
     }
+
+    fn for_one_attempt(&self) -> Option<Box<dyn Sampler<D>>> {
+        Some(Box::new(GoalBiased { inner: self.inner.for_one_attempt()?, bias: self.bias }))
+    }
+
+    fn learn_block(&mut self, m: &D, stopped: &State<D>, to: &PartialState<D>) {
+        self.inner.learn_block(m, stopped, to);
+    }
 }
 
 impl<D: Domain> Sampler<D> for Box<dyn Sampler<D>> {
     fn sample(&self, m: &D, goal: &dyn Goal<D>, rng: &mut dyn Rng) -> PartialState<D> {
         (**self).sample(m, goal, rng)
+    }
+
+    fn for_one_attempt(&self) -> Option<Box<dyn Sampler<D>>> {
+        (**self).for_one_attempt()
+    }
+
+    fn learn_block(&mut self, m: &D, stopped: &State<D>, to: &PartialState<D>) {
+        (**self).learn_block(m, stopped, to);
     }
 }

@@ -70,6 +70,12 @@ impl<A: ComponentSpace, B: ComponentSpace> ComponentSpace for Product<A, B> {
             self.second.overlay(&from.1, &target.1, groups.lowered(self.first_groups())),
         )
     }
+
+    fn shadow(&self, q: &Self::Config, mark: &mut dyn FnMut(u32, f64)) {
+        self.first.shadow(&q.0, mark);
+        let by = self.first_groups();
+        self.second.shadow(&q.1, &mut |group, x| mark(group.saturating_add(by), x));
+    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::ComponentSpace;
+use super::{ComponentSpace, Place};
 use crate::error::Error;
 
 /// `[lower_i, upper_i]` for `i < N`, with metres of travel per unit of each coordinate as weights.
@@ -92,6 +92,22 @@ impl<const N: usize> ComponentSpace for RealBox<N> {
 
     fn sample(&self, rng: &mut dyn Rng) -> [f64; N] {
         std::array::from_fn(|i| rng.random_range(self.lower[i]..=self.upper[i]))
+    }
+
+    /// The box is the support: all of it, or a tenth of its width along a random face.
+    fn sample_at(&self, place: Place, rng: &mut dyn Rng) -> Option<[f64; N]> {
+        const EDGE: f64 = 0.1;
+        let mut q = self.sample(rng);
+        if place == Place::SupportEdge && N > 0 {
+            let i = rng.random_range(0..N);
+            let bound = if rng.random_bool(0.5) { self.lower[i] } else { self.upper[i] };
+            q[i] = bound + EDGE * (q[i] - bound);
+        }
+        self.contains(&q).then_some(q)
+    }
+
+    fn shadow(&self, q: &[f64; N], mark: &mut dyn FnMut(u32, f64)) {
+        q.iter().zip(&self.weight).for_each(|(x, w)| mark(0, w * x));
     }
 }
 

@@ -59,6 +59,12 @@ impl ComponentSpace for Se2 {
         let [x, y] = self.position.sample(rng);
         [x, y, self.heading.sample(rng)]
     }
+
+    fn shadow(&self, [x, y, yaw]: &[f64; 3], mark: &mut dyn FnMut(u32, f64)) {
+        mark(0, *x);
+        mark(0, *y);
+        self.heading.shadow(yaw, mark);
+    }
 }
 
 #[cfg(test)]

@@ -143,14 +143,14 @@ fn a_tour_by_hand() {
 #[test]
 fn the_lowest_index_wins_a_tie_and_nan_loses() {
     let problem = small().puck_goal(0, [2.0, 1.0]).problem().unwrap();
-    let mut tree = Tree::rooted_at(problem.start().clone());
+    let mut tree = Tree::rooted_at(problem.domain(), problem.start().clone());
     let target = State { robot: [0.5, 0.5], ..problem.start().clone() };
     let instance = std::sync::Arc::new(super::support::robot_instance(problem.start(), &target));
     for i in 1..5_u8 {
         let t = f64::from(i) / 4.0;
         let state = instance.at(problem.domain(), t, problem.start());
         let edge = darrt_core::tree::Edge { parent: Tree::<World>::ROOT, instance: instance.clone(), t, primitive: 0 };
-        tree.add(state, edge).unwrap();
+        tree.add(problem.domain(), state, edge).unwrap();
     }
     let index = |measure: &dyn Fn(f64) -> f64| nearest_by(&tree, |s| measure(s.robot[1])).unwrap().index();
     assert_eq!(index(&|_| 1.0), 0);

@@ -42,7 +42,7 @@ fn the_nearest_node_is_the_nearest() {
     let m = problem.domain();
     let many = proptest::collection::vec(any_mode(m), 0..12);
     proptest!(config(12, REGRESSIONS), |(to in targets(m), others in many)| {
-        let tree = tree_of(problem.start(), others.iter().chain(&others).cloned());
+        let tree = tree_of(problem.domain(), problem.start(), others.iter().chain(&others).cloned());
         for distance in all {
             check_nearest(m, distance, &tree, &to)?;
         }

@@ -39,13 +39,15 @@ pub struct Sketch {
     pub sample: fn(&mut dyn Rng) -> Config,
     /// [`ComponentSpace::overlay`].
     pub overlay: fn(&Config, &Config, GroupSet) -> Config,
+    /// [`ComponentSpace::shadow`]: the coordinates of position and heading, the groups in that order.
+    pub shadow: fn(&Config) -> [f64; 2],
     /// [`ComponentSpace::tolerance`].
     pub tolerance: f64,
 }
 
 impl Default for Sketch {
     fn default() -> Self {
-        Self { contains: inside, distance, interpolate, sample, overlay, tolerance: 1e-9 }
+        Self { contains: inside, distance, interpolate, sample, overlay, shadow, tolerance: 1e-9 }
     }
 }
 
@@ -81,6 +83,11 @@ pub fn overlay(from: &Config, target: &Config, groups: GroupSet) -> Config {
     [pick(0, from[0], target[0]), pick(1, from[1], target[1])]
 }
 
+/// The position, and a point that a turned heading moves away by no more than the turn.
+pub fn shadow([x, heading]: &Config) -> [f64; 2] {
+    [*x, heading.sin()]
+}
+
 impl ComponentSpace for Sketch {
     type Config = Config;
 
@@ -110,6 +117,10 @@ impl ComponentSpace for Sketch {
 
     fn groups(&self) -> GroupSet {
         GroupSet::first(2)
+    }
+
+    fn shadow(&self, q: &Config, mark: &mut dyn FnMut(u32, f64)) {
+        (0..).zip((self.shadow)(q)).for_each(|(group, x)| mark(group, x));
     }
 
     fn overlay(&self, from: &Config, target: &Config, groups: GroupSet) -> Config {
@@ -161,6 +172,10 @@ pub struct Bench {
     pub reach: fn(&Config, &Config) -> f64,
     /// [`Domain::reach_from`], by the working point and the configuration of the object.
     pub reach_from: fn([f64; 3], &Config) -> f64,
+    /// [`Domain::object_point`], the first coordinate, by the configuration of the object.
+    pub object_point: fn(&Config) -> f64,
+    /// [`Domain::reach_at_least`].
+    pub reach_at_least: fn(f64) -> f64,
     /// [`Domain::hop`], by the configurations of the two objects.
     pub hop: fn(&Config, &Config) -> f64,
     /// [`Domain::component_name`].
@@ -175,6 +190,8 @@ impl Default for Bench {
             objects: vec![Sketch::default(); 2],
             reach: along,
             reach_from: |point, at| (point[0] - at[0]).abs(),
+            object_point: |at| at[0],
+            reach_at_least: |gap_m| gap_m,
             hop: along,
             name,
         }
@@ -217,6 +234,14 @@ impl Domain for Bench {
 
     fn reach_from(&self, working_point: [f64; 3], _: &Config, _: ObjectId, at: &Config) -> f64 {
         (self.reach_from)(working_point, at)
+    }
+
+    fn object_point(&self, _: ObjectId, at: &Config) -> [f64; 3] {
+        [(self.object_point)(at), 0.0, 0.0]
+    }
+
+    fn reach_at_least(&self, _: ObjectId, gap_m: f64) -> f64 {
+        (self.reach_at_least)(gap_m)
     }
 
     fn hop(&self, from: (ObjectId, &Config), to: (ObjectId, &Config)) -> f64 {

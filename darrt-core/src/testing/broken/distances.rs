@@ -174,8 +174,8 @@ fn nearest(nearest: Option<Nearest>) -> Result<(), Broken> {
     let m = Bench::default();
     let with_cart = |at| State { objects: [at, [3.0, 0.5]].into_iter().collect(), ..state([0.5, 0.0]) };
     let gauge = Gauge { metres: honest_metres, nearest };
-    let twins = tree_of(&with_cart([1.0, 0.0]), [with_cart([3.0, 0.0]), with_cart([0.2, 0.0])]);
+    let twins = tree_of(&m, &with_cart([1.0, 0.0]), [with_cart([3.0, 0.0]), with_cart([0.2, 0.0])]);
     check_nearest(&m, &gauge, &twins, &cart_at([2.0, 0.0]))?;
-    let turned = tree_of(&with_cart([1.0, 0.0]), [with_cart([1.9, 0.9])]);
+    let turned = tree_of(&m, &with_cart([1.0, 0.0]), [with_cart([1.9, 0.9])]);
     check_nearest(&m, &gauge, &turned, &cart_at([2.0, 0.5]))
 }

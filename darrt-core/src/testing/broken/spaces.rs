@@ -9,8 +9,9 @@ use super::Case;
 use super::bench::{self, Bench, Config, Sketch, robot_at, state};
 use crate::laws::{self, Broken, SpaceClaims, check_component_space, check_covering, check_domain, check_partial};
 use crate::partial::PartialState;
-use crate::space::GroupSet;
 use crate::space::so2::{turn, wrap};
+use crate::space::{ComponentSpace, GroupSet};
+use crate::state::State;
 
 /// Three ordinary configurations.
 const TRIPLE: [Config; 3] = [[0.5, 3.0], [3.5, -3.0], [2.0, 0.5]];
@@ -28,7 +29,7 @@ fn honest() -> Result<(), Broken> {
 }
 
 pub(super) fn cases() -> Vec<Case> {
-    [metrics(), ways(), samples(), overlays(), targets(), domains()].concat()
+    [metrics(), ways(), samples(), shadows(), overlays(), targets(), domains()].concat()
 }
 
 fn case(name: &'static str, wrong: &'static str, law: &'static str, broken: fn() -> Result<(), Broken>) -> Case {
@@ -153,6 +154,58 @@ fn samples() -> Vec<Case> {
     ]
 }
 
+fn shadows() -> Vec<Case> {
+    use laws::space::{SHADOW, SHADOW_ALIKE};
+    vec![
+        case("unwrapped shadow", "the heading as it is: almost a turn apart where the way is short", SHADOW, || {
+            check(Sketch { shadow: |q| *q, ..Sketch::default() })
+        }),
+        Case {
+            name: "one coordinate more",
+            wrong: "marks the heading only where there is one",
+            law: SHADOW_ALIKE,
+            broken: || growing(|q| if q[1] > 0.0 { 2 } else { 1 }),
+            honest: || growing(|_| 2),
+        },
+    ]
+}
+
+/// The honest space with a shadow of as many coordinates as this says.
+struct Marked(fn(&Config) -> usize);
+
+impl ComponentSpace for Marked {
+    type Config = Config;
+
+    fn dimension(&self) -> usize {
+        2
+    }
+
+    fn contains(&self, q: &Config) -> bool {
+        bench::inside(q)
+    }
+
+    fn distance(&self, a: &Config, b: &Config) -> f64 {
+        bench::distance(a, b)
+    }
+
+    fn interpolate(&self, a: &Config, b: &Config, t: f64) -> Config {
+        bench::interpolate(a, b, t)
+    }
+
+    fn sample(&self, rng: &mut dyn Rng) -> Config {
+        bench::sample(rng)
+    }
+
+    fn shadow(&self, q: &Config, mark: &mut dyn FnMut(u32, f64)) {
+        (0..).zip(bench::shadow(q)).take((self.0)(q)).for_each(|(_, x): (u32, f64)| mark(0, x));
+    }
+}
+
+fn growing(count: fn(&Config) -> usize) -> Result<(), Broken> {
+    let [a, b, c] = TRIPLE;
+    check_component_space(&Marked(count), &SpaceClaims::default(), [&a, &b, &c], [0.25, 0.6], 1)
+}
+
 fn overlays() -> Vec<Case> {
     use laws::space::{OVERLAY_ENDS, OVERLAY_GROUPS, OVERLAY_INSIDE};
     vec![
@@ -263,7 +316,7 @@ fn subset(robot: Sketch) -> Result<(), Broken> {
 }
 
 fn domains() -> Vec<Case> {
-    use laws::domain::{COUNT, HOP, NAMES, REACH, REACH_FROM};
+    use laws::domain::{COUNT, HOP, NAMES, POINT, REACH, REACH_AT_LEAST, REACH_FROM};
     let case = |name, wrong, law, broken| Case { name, wrong, law, broken, honest: || domain(&Bench::default()) };
     vec![
         case("inside the object", "reach subtracts the radius of the object, and is negative inside it", REACH, || {
@@ -275,6 +328,16 @@ fn domains() -> Vec<Case> {
             REACH_FROM,
             || domain(&Bench { reach_from: |point, at| (point[0] - at[0]).hypot(at[1] / 10.0), ..Bench::default() }),
         ),
+        case("point in millimetres", "the point of an object is given in another unit", POINT, || {
+            let reach_at_least = |_| 0.0;
+            let (a, b) = (state([0.5, 3.0]), [[0.2, 2.0], [1.1, -2.0]].into_iter().collect());
+            let b = State { objects: b, ..a.clone() };
+            let m = Bench { object_point: |at| 1000.0 * at[0], reach_at_least, ..Bench::default() };
+            check_domain(&m, &SpaceClaims::default(), [&a, &b, &a], [0.25, 0.6], 1)
+        }),
+        case("there and back again", "bounds the reach by twice the gap", REACH_AT_LEAST, || {
+            domain(&Bench { reach_at_least: |gap_m| 2.0 * gap_m, ..Bench::default() })
+        }),
         case("normalised hop", "divides by the distance of two objects at the same place", HOP, || {
             domain(&Bench { hop: |a, b| (a[0] - b[0]).powi(2) / (a[0] - b[0]).abs(), ..Bench::default() })
         }),

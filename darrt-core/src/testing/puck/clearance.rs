@@ -59,6 +59,8 @@ pub struct Obstacle {
 #[derive(Debug, Clone, Default)]
 pub struct Clearance {
     obstacles: Vec<Obstacle>,
+    /// The robot collides with nothing.
+    ignores_robot: bool,
 }
 
 /// Two bodies and the room between them.
@@ -81,7 +83,7 @@ enum Body {
 impl Clearance {
     /// The rule for these obstacles.
     pub fn new(obstacles: Vec<Obstacle>) -> Self {
-        Self { obstacles }
+        Self { obstacles, ignores_robot: false }
     }
 
     /// The obstacles.
@@ -102,7 +104,7 @@ impl Clearance {
         let discs = std::iter::once((ComponentId::Robot, &state.robot, m.robot_radius())).chain(
             m.ids().zip(&state.objects).zip(m.pucks()).map(|((id, at), p)| (ComponentId::Object(id), at, p.radius_m)),
         );
-        for (first, at, radius_m) in discs {
+        for (first, at, radius_m) in discs.skip(usize::from(self.ignores_robot)) {
             if is_moving(first) > 0 {
                 for (i, obstacle) in self.obstacles.iter().enumerate() {
                     let room_m = obstacle.outline.distance(at) - radius_m - CLEARANCE_M;
@@ -198,6 +200,10 @@ impl Validity<PuckWorld> for Clearance {
             Some(pair) if pair.room_m < 0.0 => Err(self.blame(m, state, &pair)),
             _ => Ok(()),
         }
+    }
+
+    fn without_robot(&self) -> Option<Arc<dyn Validity<PuckWorld>>> {
+        Some(Arc::new(Self { ignores_robot: true, ..self.clone() }))
     }
 
     /// Conservative advancement: no point moves farther than `length * dt` (law of

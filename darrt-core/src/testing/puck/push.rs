@@ -28,7 +28,8 @@ impl Primitive<PuckWorld> for Push {
 
     fn approach(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> Option<f64> {
         let open = to.objects().filter(|(id, _)| !to.is_object_met(m, from, *id));
-        open.map(|(id, _)| m.gap(from, id).max(0.0)).min_by(f64::total_cmp)
+        let contacts = open.filter_map(|(id, target)| contact(m, from, id, target));
+        contacts.map(|contact| plane::distance(&from.robot, &contact)).min_by(f64::total_cmp)
     }
 
     fn propagate(
@@ -40,9 +41,8 @@ impl Primitive<PuckWorld> for Push {
     ) -> Result<Instances<PuckWorld>, Infeasible> {
         let open: Vec<_> = to.objects().filter(|(id, _)| !to.is_object_met(m, from, *id)).collect();
         let (id, target) = *open.get(rng.random_range(0..open.len().max(1))).ok_or(Infeasible::NoProgress)?;
-        let at = from.object(id).ok_or(Infeasible::NoContact)?;
-        let direction = plane::direction(at, target).ok_or(Infeasible::NoProgress)?;
-        let contact = plane::along(at, &direction, -m.touch_distance(id));
+        from.object(id).ok_or(Infeasible::NoContact)?;
+        let contact = contact(m, from, id, target).ok_or(Infeasible::NoProgress)?;
         if !m.robot().contains(&contact) {
             return Err(Infeasible::NoContact);
         }
@@ -52,6 +52,12 @@ impl Primitive<PuckWorld> for Push {
         let (transit, touching) = approach(m, from, id, contact).ok_or(Infeasible::NoContact)?;
         Ok(vec![transit, push(m, &touching, id, *target).ok_or(Infeasible::NoProgress)?])
     }
+}
+
+/// Where the robot stands to push a puck straight to `target`.
+fn contact(m: &PuckWorld, from: &State<PuckWorld>, id: ObjectId, target: &Point) -> Option<Point> {
+    let at = from.object(id)?;
+    Some(plane::along(at, &plane::direction(at, target)?, -m.touch_distance(id)))
 }
 
 /// Moves the touched puck to `target`; the robot follows at the distance of the contact.

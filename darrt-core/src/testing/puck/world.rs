@@ -152,6 +152,18 @@ impl Domain for PuckWorld {
         (plane::distance(robot, at) - self.touch_distance(object)).max(0.0)
     }
 
+    fn working_point(&self, robot: &Point) -> [f64; 3] {
+        [robot[0], robot[1], 0.0]
+    }
+
+    fn object_point(&self, _: ObjectId, at: &Point) -> [f64; 3] {
+        [at[0], at[1], 0.0]
+    }
+
+    fn reach_at_least(&self, object: ObjectId, gap_m: f64) -> f64 {
+        (gap_m - self.touch_distance(object)).max(0.0)
+    }
+
     fn hop(&self, from: (ObjectId, &Point), to: (ObjectId, &Point)) -> f64 {
         // From somewhere around one puck to somewhere around the other.
         (plane::distance(from.1, to.1) - self.touch_distance(from.0) - self.touch_distance(to.0)).max(0.0)

@@ -1,0 +1,136 @@
+//! The searches by name.
+
+use std::fmt;
+
+use super::connect::Connect;
+use super::hierarchical::Hierarchical;
+use super::{Darrt, Step, Strategy};
+use crate::budget::Interrupt;
+use crate::domain::Domain;
+use crate::observe::accounts::Accounts;
+use crate::problem::Problem;
+use crate::verify::{Refusal, Solution};
+
+/// One attempt of a search, which [`solve_with`](crate::solve::solve_with) asks for one iteration after the other.
+///
+/// # Laws
+/// Pure but for the interrupt: the same beginning gives the same iterations. Every iteration makes one extension and counts
+/// it, and a solution has been accepted by the verifier of the problem.
+pub trait Planner<D: Domain> {
+    /// The empty plan, if the start lies in the goal and the verifier agrees.
+    fn prove_start(&mut self) -> Option<Result<Solution<D>, Refusal>>;
+
+    /// One iteration.
+    fn step(&mut self) -> Step<D>;
+
+    /// Iterations done.
+    fn iteration(&self) -> u64;
+
+    /// Nodes of its trees.
+    fn nodes(&self) -> usize;
+
+    /// The counts so far.
+    fn accounts(&self) -> Accounts;
+
+    /// Metres from a sample of the goal to the nearest state so far; infinite if the goal has no samples.
+    fn nearest_to_goal(&self) -> f64;
+}
+
+/// Where an attempt begins: what [`Darrt::new`] asks for besides problem and strategy.
+#[derive(Debug, Clone, Copy)]
+pub struct Start<'p> {
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Number of the attempt; attempts with different numbers share no random numbers.
+    pub attempt: u64,
+    /// Most nodes of one tree.
+    pub node_limit: usize,
+    /// Asked within an iteration whether to go on.
+    pub interrupt: Interrupt<'p>,
+}
+
+/// Which search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+#[non_exhaustive]
+pub enum Algorithm {
+    /// Algorithm 1 of the paper: one tree from the start.
+    #[default]
+    Darrt,
+    /// `DARRTConnect`: a second tree from the goal.
+    Connect,
+    /// `DARRTH`: first the objects alone, then the whole from subgoal to subgoal.
+    Hierarchical,
+}
+
+impl Algorithm {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Darrt, Self::Connect, Self::Hierarchical];
+
+    /// Its name in files and options.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Darrt => "darrt",
+            Self::Connect => "connect",
+            Self::Hierarchical => "hierarchical",
+        }
+    }
+
+    /// The search of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|algorithm| algorithm.name() == name)
+    }
+
+    /// One attempt at `problem`.
+    pub fn planner<'p, D: Domain>(
+        self,
+        problem: &Problem<D>,
+        strategy: &'p Strategy<D>,
+        start: Start<'p>,
+    ) -> Box<dyn Planner<D> + 'p> {
+        match self {
+            Self::Darrt => Box::new(Darrt::begin(problem, strategy, start)),
+            Self::Connect => Box::new(Connect::new(problem, strategy, start)),
+            Self::Hierarchical => Box::new(Hierarchical::new(problem, strategy, start)),
+        }
+    }
+}
+
+impl fmt::Display for Algorithm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl<'p, D: Domain> Darrt<'p, D> {
+    /// [`Darrt::new`] with everything in one value.
+    pub(super) fn begin(problem: &Problem<D>, strategy: &'p Strategy<D>, start: Start<'p>) -> Self {
+        let Start { seed, attempt, node_limit, interrupt } = start;
+        Self::new(problem, strategy, seed, attempt, node_limit).interrupted_by(interrupt)
+    }
+}
+
+impl<D: Domain> Planner<D> for Darrt<'_, D> {
+    fn prove_start(&mut self) -> Option<Result<Solution<D>, Refusal>> {
+        self.prove_start()
+    }
+
+    fn step(&mut self) -> Step<D> {
+        self.step()
+    }
+
+    fn iteration(&self) -> u64 {
+        self.iteration()
+    }
+
+    fn nodes(&self) -> usize {
+        self.tree().len()
+    }
+
+    fn accounts(&self) -> Accounts {
+        self.accounts().clone()
+    }
+
+    fn nearest_to_goal(&self) -> f64 {
+        self.nearest_to_goal()
+    }
+}
