@@ -8,10 +8,12 @@
 //! | question | file |
 //! |---|---|
 //! | which configurations reach this pose, for one choice of the free joint? | [`Arm::inverse`], [`Arm::inverse_with_pan`] |
+//! | the same for eight choices at once? | [`Arm::inverse_for_rolls`], [`many_rolls`] |
 //! | any configuration that reaches this pose; the one nearest to here? | [`Arm::inverse_any`], [`Arm::inverse_near`] |
 //! | how far does any point of the arm travel when joints move? | [`travel`] |
 
 mod closed_form;
+pub mod many_rolls;
 mod search;
 pub mod travel;
 

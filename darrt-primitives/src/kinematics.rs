@@ -6,20 +6,24 @@
 //! | is this robot description sound? | [`urdf`] |
 //! | between which values may a joint stand? | [`limit`] |
 //! | where are all links? | [`tree`] |
+//! | where are they in many configurations at once? | [`batch`], in the arithmetic of [`lanes`] |
 //! | what do the links occupy? | [`collision`] |
 //! | how does a link move when one joint moves? | [`jacobian`] |
 //! | which joint values bring a link to a pose? | [`numeric_inverse`] |
 //!
 //! Nothing here names a robot. A robot with a closed-form inverse brings its own; [`numeric_inverse`] is for the rest.
 
+pub mod batch;
 pub mod collision;
 pub mod guard;
 pub mod jacobian;
+pub mod lanes;
 pub mod limit;
 pub mod numeric_inverse;
 pub mod tree;
 pub mod urdf;
 
+pub use batch::{BatchForward, BatchPoses, PoseLanes};
 pub use collision::{link_bodies, mesh_folders, no_meshes};
 pub use jacobian::Chain;
 pub use limit::JointLimit;

@@ -11,14 +11,14 @@ use super::{Arm, ArmConfiguration, Solutions};
 use crate::forward::{FOREARM, SHOULDER_X, SHOULDER_Y, SHOULDER_Z, TOOL, UPPER_ARM, UPPER_ARM_OFFSET};
 
 /// How far outside a limit, or beyond one for a cosine, rounding may carry a value.
-const SLACK: f64 = 1e-12;
+pub(super) const SLACK: f64 = 1e-12;
 
 /// What the inverse needs of a pose.
-struct Target {
+pub(super) struct Target {
     /// Wrist centre seen from the pan axis at shoulder height, base axes, m.
-    wrist: Vector3<f64>,
+    pub(super) wrist: Vector3<f64>,
     /// Rotation of the tool in the base frame.
-    rotation: Matrix3<f64>,
+    pub(super) rotation: Matrix3<f64>,
 }
 
 impl Arm {
@@ -32,8 +32,7 @@ impl Arm {
     /// `base_from_tool(q)` equals the pose to 1e-12 for every `q` written.
     ///
     /// # Source
-    /// Own derivation (see the head of this file); the wrist step avoids two independent arc tangents, which lose all
-    /// accuracy near a straight wrist.
+    /// Own derivation; see the head of this file.
     pub fn inverse(&self, base_from_tool: &Isometry3<f64>, upper_arm_roll: f64, out: &mut Solutions) {
         out.clear();
         let Some(q3) = self.limits[2].wrap(upper_arm_roll, SLACK) else {
@@ -51,11 +50,15 @@ impl Arm {
             let Some(c4) = cosine(c4) else { continue };
             let x = (k - 2.0 * l1 * l2 * c4) / (2.0 * a);
             for s4 in self.elbow_sines(c4).into_iter().flatten() {
-                let q4 = s4.atan2(c4);
+                let fourth = Turn::of(s4, c4);
+                if self.limits[3].wrap(fourth.angle, SLACK).is_none() {
+                    continue;
+                }
                 let (big_a, b, c) = (l1 + l2 * c4, l2 * s4 * s3, -l2 * s4 * c3);
-                let q2 = (c * x - big_a * w.z).atan2(big_a * x + c * w.z);
-                let q1 = w.y.atan2(w.x) - b.atan2(a + x);
-                self.wrist([q1, q2, q3, q4], &target, out);
+                let second = Turn::towards(c * x - big_a * w.z, big_a * x + c * w.z);
+                // The difference of the directions of (wx, wy) and of (a + x, b).
+                let first = Turn::towards(w.y * (a + x) - w.x * b, w.x * (a + x) + w.y * b);
+                self.wrist([first, second, Turn { angle: q3, sin: s3, cos: c3 }, fourth], &target, out);
             }
         }
     }
@@ -77,18 +80,18 @@ impl Arm {
             return;
         };
         for s4 in self.elbow_sines(c4).into_iter().flatten() {
-            let q4 = s4.atan2(c4);
             let Some(s3) = upper_roll_sine(v.y, l2 * s4) else { continue };
-            let q3 = s3.asin();
-            for q3 in [q3, std::f64::consts::PI - q3] {
-                let (big_a, c) = (l1 + l2 * c4, -l2 * s4 * q3.cos());
-                let q2 = (c * v.x - big_a * v.z).atan2(big_a * v.x + c * v.z);
-                self.wrist([q1, q2, q3, q4], &target, out);
+            let c3 = ((1.0 - s3) * (1.0 + s3)).sqrt();
+            for third in [Turn::of(s3, c3), Turn::of(s3, -c3)] {
+                let (big_a, c) = (l1 + l2 * c4, -l2 * s4 * third.cos);
+                let second = Turn::towards(c * v.x - big_a * v.z, big_a * v.x + c * v.z);
+                let first = Turn { angle: q1, sin: s1, cos: c1 };
+                self.wrist([first, second, third, Turn::of(s4, c4)], &target, out);
             }
         }
     }
 
-    fn target(&self, base_from_tool: &Isometry3<f64>) -> Target {
+    pub(super) fn target(&self, base_from_tool: &Isometry3<f64>) -> Target {
         let rotation = base_from_tool.rotation.to_rotation_matrix().into_inner();
         let shoulder = Vector3::new(SHOULDER_X, self.side.sign() * SHOULDER_Y, SHOULDER_Z + self.torso_m);
         Target { wrist: base_from_tool.translation.vector - TOOL * rotation.column(0) - shoulder, rotation }
@@ -101,21 +104,31 @@ impl Arm {
     }
 
     /// Adds the wrist joints to the first four and stores what lies inside the limits.
-    fn wrist(&self, first: [f64; 4], target: &Target, out: &mut Solutions) {
-        let [q1, q2, q3, q4] = first;
-        let base_from_forearm = rz(q1) * ry(q2) * rx(q3) * ry(q4);
-        // m = Rx(q5) Ry(q6) Rx(q7)
-        let m = base_from_forearm.transpose() * target.rotation;
-        let h = m[(1, 0)].hypot(m[(2, 0)]);
+    // OPTIMIZATION: limits are looked at as soon as a joint is known, and of a product of rotations only the two columns
+    // that the angles need are computed, from sines and cosines that are known already.
+    fn wrist(&self, first: [Turn; 4], target: &Target, out: &mut Solutions) {
+        if first.iter().zip(&self.limits).any(|(turn, limit)| limit.wrap(turn.angle, SLACK).is_none()) {
+            return;
+        }
+        // m = Rx(q5) Ry(q6) Rx(q7), the rotation of the hand seen from the forearm.
+        let m0 = seen_after(&first, target.rotation.column(0).into());
+        let h = (m0.y * m0.y + m0.z * m0.z).sqrt();
         for sign in [-1.0, 1.0] {
             if sign > 0.0 && self.limits[5].upper <= 0.0 {
                 continue;
             }
-            let q6 = sign * h.atan2(m[(0, 0)]);
-            let q5 = (sign * m[(1, 0)]).atan2(-sign * m[(2, 0)]);
-            let rest = (rx(q5) * ry(q6)).transpose() * m;
-            let q7 = rest[(2, 1)].atan2(rest[(1, 1)]);
-            self.keep([q1, q2, q3, q4, q5, q6, q7], out);
+            let q6 = sign * h.atan2(m0.x);
+            if self.limits[5].wrap(q6, SLACK).is_none() {
+                continue;
+            }
+            // With a straight wrist only q5 + q7 is given: q5 is zero then.
+            let fifth = if h > 0.0 { Turn::of(sign * m0.y / h, -sign * m0.z / h) } else { Turn::of(0.0, 1.0) };
+            let m1 = seen_after(&first, target.rotation.column(1).into());
+            // What is left after q5 and q6: two independent arc tangents would lose all accuracy near a straight wrist.
+            let q7 = (sign * h * m1.x + m0.x * (fifth.cos * m1.z - fifth.sin * m1.y))
+                .atan2(fifth.cos * m1.y + fifth.sin * m1.z);
+            let [q1, q2, q3, q4] = first.map(|turn| turn.angle);
+            self.keep([q1, q2, q3, q4, fifth.angle, q6, q7], out);
         }
     }
 
@@ -159,17 +172,32 @@ fn quadratic_roots(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
     [Some(first), (first != second).then_some(second)]
 }
 
-fn rx(angle: f64) -> Matrix3<f64> {
-    let (s, c) = angle.sin_cos();
-    Matrix3::new(1.0, 0.0, 0.0, 0.0, c, -s, 0.0, s, c)
+/// An angle, rad, with its sine and cosine.
+#[derive(Debug, Clone, Copy)]
+struct Turn {
+    angle: f64,
+    sin: f64,
+    cos: f64,
 }
 
-fn ry(angle: f64) -> Matrix3<f64> {
-    let (s, c) = angle.sin_cos();
-    Matrix3::new(c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c)
+impl Turn {
+    fn of(sin: f64, cos: f64) -> Self {
+        Self { angle: sin.atan2(cos), sin, cos }
+    }
+
+    /// The angle of the direction `(x, y)` of any length; zero for none.
+    fn towards(y: f64, x: f64) -> Self {
+        let length = (x * x + y * y).sqrt();
+        if length > 0.0 { Self::of(y / length, x / length) } else { Self::of(0.0, 1.0) }
+    }
 }
 
-fn rz(angle: f64) -> Matrix3<f64> {
-    let (s, c) = angle.sin_cos();
-    Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0)
+/// `(Rz(q1) Ry(q2) Rx(q3) Ry(q4))^T v`.
+fn seen_after(turns: &[Turn; 4], v: Vector3<f64>) -> Vector3<f64> {
+    let [t1, t2, t3, t4] = turns;
+    let (x, y) = (t1.cos * v.x + t1.sin * v.y, t1.cos * v.y - t1.sin * v.x);
+    let (x, z) = (t2.cos * x - t2.sin * v.z, t2.sin * x + t2.cos * v.z);
+    let (y, z) = (t3.cos * y + t3.sin * z, t3.cos * z - t3.sin * y);
+    let (x, z) = (t4.cos * x - t4.sin * z, t4.sin * x + t4.cos * z);
+    Vector3::new(x, y, z)
 }

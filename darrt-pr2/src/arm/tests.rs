@@ -6,16 +6,16 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Largest entry of the difference of two poses.
-fn pose_error(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
+pub(super) fn pose_error(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     (a.to_homogeneous() - b.to_homogeneous()).abs().max()
 }
 
-fn random_arm(rng: &mut dyn Rng, kind: LimitKind) -> Arm {
+pub(super) fn random_arm(rng: &mut dyn Rng, kind: LimitKind) -> Arm {
     let side = Side::BOTH[rng.random_range(0..2)];
     Arm::new(side, rng.random_range(0.0..0.33), kind).unwrap()
 }
 
-fn random_configuration(arm: &Arm, rng: &mut dyn Rng) -> ArmConfiguration {
+pub(super) fn random_configuration(arm: &Arm, rng: &mut dyn Rng) -> ArmConfiguration {
     arm.limits.map(|l| rng.random_range(l.lower.max(-3.9)..=l.upper.min(3.9)))
 }
 
@@ -28,7 +28,7 @@ fn check(arm: &Arm, pose: &Isometry3<f64>, solutions: &Solutions) {
     }
 }
 
-fn contains(arm: &Arm, solutions: &Solutions, q: &ArmConfiguration, tolerance: f64) -> bool {
+pub(super) fn contains(arm: &Arm, solutions: &Solutions, q: &ArmConfiguration, tolerance: f64) -> bool {
     solutions.iter().any(|s| joint_distance(&arm.limits, s, q) < tolerance)
 }
 

@@ -1,6 +1,7 @@
 use super::*;
 use crate::arm::stock_limits;
-use darrt_primitives::kinematics::UrdfError;
+use darrt_primitives::kinematics::lanes::{LANES, Row};
+use darrt_primitives::kinematics::{BatchForward, PoseLanes, UrdfError};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 
@@ -54,11 +55,61 @@ fn tree_and_chain_reach_the_reference_poses() {
         let tool = model.tree().link_index(&format!("{}_gripper_tool_frame", side.prefix())).unwrap();
         let mut chain = ArmPoses::default();
         ArmChain::new(side, torso).world_from_links(&[0.0; 3], &q, 0.1, &mut chain);
-        for pose in [&poses[tool], chain.pose(Frame::Tool)] {
+        let in_batch = batch_pose(&model, &state, tool);
+        for pose in [&poses[tool], chain.pose(Frame::Tool), &in_batch] {
             assert!((pose.translation.vector - xyz).norm() < 1e-9, "{}", case["id"]);
             assert!(pose.rotation.angle_to(&rotation) < 1e-9, "{}", case["id"]);
         }
         assert!((chain.pose(Frame::WristRoll).translation.vector - wrist).norm() < 1e-9);
+    }
+}
+
+/// Pose of one link from a batch whose lanes all have this state.
+fn batch_pose(model: &Pr2Model, state: &WholeBody, link: usize) -> Isometry3<f64> {
+    let batch = BatchForward::for_links(model.tree(), &[link]).unwrap();
+    let rows: Vec<Row> = model.joint_values(state).into_iter().map(Row::splat).collect();
+    let mut out = batch.poses();
+    batch.forward(&rows, &PoseLanes::splat(&world_from_base(&state.base)), &mut out).unwrap();
+    out.link(link).unwrap().pose(LANES - 1).unwrap()
+}
+
+/// Every link of the right arm, eight configurations at once.
+#[test]
+fn batch_equals_chain() {
+    let model = model();
+    let links: Vec<usize> = Frame::ALL
+        .iter()
+        .flat_map(|frame| frame.links())
+        .map(|name| model.tree().link_index(&format!("r_{name}")).unwrap())
+        .collect();
+    let batch = BatchForward::for_links(model.tree(), &links).unwrap();
+    let mut out = batch.poses();
+    let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(8);
+    for _ in 0..200 {
+        let states: [WholeBody; LANES] = std::array::from_fn(|_| {
+            let mut state = WholeBody::at_rest();
+            state.arms[0] = std::array::from_fn(|_| rng.random_range(-4.0..4.0));
+            state.finger_angles[0] = rng.random_range(0.0..0.548);
+            state
+        });
+        let values = states.each_ref().map(|state| model.joint_values(state));
+        let rows: Vec<Row> =
+            (0..values[0].len()).map(|v| Row(std::array::from_fn(|lane| values[lane][v]))).collect();
+        let base = [rng.random_range(-3.0..3.0), rng.random_range(-3.0..3.0), rng.random_range(-3.0..3.0)];
+        batch.forward(&rows, &PoseLanes::splat(&world_from_base(&base)), &mut out).unwrap();
+        for (lane, state) in states.iter().enumerate() {
+            let mut chain = ArmPoses::default();
+            let angle = state.finger_angles[0];
+            ArmChain::new(Side::Right, state.torso_m).world_from_links(&base, &state.arms[0], angle, &mut chain);
+            for frame in Frame::ALL {
+                for name in frame.links() {
+                    let link = model.tree().link_index(&format!("r_{name}")).unwrap();
+                    let pose = out.link(link).unwrap().pose(lane).unwrap();
+                    let difference = pose.to_homogeneous() - chain.pose(frame).to_homogeneous();
+                    assert!(difference.abs().max() < 1e-13, "{name}: {difference}");
+                }
+            }
+        }
     }
 }
 
