@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use crate::bench::BenchError;
 use crate::picture::PictureError;
 use crate::plan_file::PlanFileError;
 use crate::problem_file::ProblemFileError;
@@ -60,6 +61,16 @@ impl From<ProblemFileError> for Failure {
 impl From<PictureError> for Failure {
     fn from(error: PictureError) -> Self {
         Self::input(error.to_string())
+    }
+}
+
+impl From<BenchError> for Failure {
+    fn from(error: BenchError) -> Self {
+        let exit = match error {
+            BenchError::Unwritable { .. } | BenchError::Locked { .. } => Exit::CannotWrite,
+            _ => Exit::BadInput,
+        };
+        Self::new(exit, on_one_line(&error.to_string()))
     }
 }
 

@@ -1,0 +1,102 @@
+//! What is said about the runs of one problem with one variant.
+
+use super::bootstrap;
+use super::collection::Collection;
+use super::digest::digest_bits;
+use super::record::Record;
+use super::survival::{Observation, Quantile, Survival};
+use super::variant::VARIANTS;
+use crate::problem_file::builtin_names;
+
+/// Confidence of the intervals of the median.
+pub const CONFIDENCE: f64 = 0.95;
+
+/// The runs of one problem with one variant in numbers. Quantiles are over all runs, those without a plan as censored.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    /// The problem.
+    pub problem: String,
+    /// The variant.
+    pub variant: String,
+    /// Runs.
+    pub runs: usize,
+    /// Runs with an accepted plan.
+    pub solved: usize,
+    /// Seconds to the accepted plan.
+    pub time: Survival,
+    /// Interval of the median of those seconds, by bootstrap; `None` for a single run.
+    pub median_interval: Option<[Quantile; 2]>,
+    /// Median of the iterations.
+    pub iterations: Quantile,
+    /// Median of the nodes.
+    pub nodes: Quantile,
+    /// Restarts over all runs.
+    pub restarts: u64,
+    /// Median steps of the plans that were found; `None` without any.
+    pub steps: Option<f64>,
+    /// Mean time that the paper reports, seconds.
+    pub paper_s: Option<f64>,
+}
+
+impl Summary {
+    /// Of these runs, which are of one problem and variant; `None` without any.
+    pub fn of(runs: &[&Record]) -> Option<Self> {
+        let first = runs.first()?;
+        let values = |value: fn(&Record) -> f64| -> Vec<Observation> {
+            runs.iter().map(|run| run.observation(value(run))).collect()
+        };
+        let times = values(|run| run.seconds.total);
+        // One group's interval does not depend on which others are there.
+        let seed = digest_bits(format!("{}/{}", first.problem, first.variant).as_bytes());
+        let steps = runs.iter().filter_map(|run| run.plan.as_ref());
+        let steps: Vec<_> =
+            steps.map(|plan| Observation { value: plan.steps as f64, is_event: true }).collect();
+        Some(Self {
+            problem: first.problem.clone(),
+            variant: first.variant.clone(),
+            runs: runs.len(),
+            solved: runs.iter().filter(|run| run.solved).count(),
+            time: Survival::of(&times),
+            median_interval: bootstrap::interval(&times, 0.5, CONFIDENCE, seed),
+            iterations: Survival::of(&values(|run| run.iterations as f64)).quantile(0.5),
+            nodes: Survival::of(&values(|run| run.nodes as f64)).quantile(0.5),
+            restarts: runs.iter().map(|run| run.restarts).sum(),
+            steps: Survival::of(&steps).quantile(0.5).value(),
+            paper_s: first.paper_s,
+        })
+    }
+}
+
+/// A summary of every problem and variant that has runs: built-in problems first, then variants in their order.
+pub fn summaries(all: &Collection) -> Vec<Summary> {
+    let variants = all.variants(&VARIANTS.map(|variant| variant.name));
+    let problems = all.problems(&builtin_names());
+    let groups = problems.iter().flat_map(|problem| variants.iter().map(move |variant| (problem, variant)));
+    groups.filter_map(|(problem, variant)| Summary::of(&all.group(problem, variant))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::record::tests::sample;
+
+    #[test]
+    fn unsolved_runs_count_in_every_quantile() {
+        let mut all = Collection::default();
+        for seed in 0..4 {
+            all.add(sample("bowl", "full", seed, 1.0 + seed as f64, true), "a").unwrap();
+        }
+        for seed in 4..9 {
+            all.add(sample("bowl", "full", seed, 60.0, false), "a").unwrap();
+        }
+        all.add(sample("simple-plate", "default", 0, 0.2, true), "a").unwrap();
+        let both = summaries(&all);
+        assert_eq!(both.len(), 2);
+        assert_eq!((both[0].problem.as_str(), both[0].median_interval), ("simple-plate", None));
+        let bowl = &both[1];
+        assert_eq!((bowl.runs, bowl.solved), (9, 4));
+        assert_eq!(bowl.time.quantile(0.5), Quantile::Beyond(60.0));
+        assert_eq!(bowl.time.quantile(0.25), Quantile::At(3.0));
+        assert_eq!((bowl.iterations, bowl.steps), (Quantile::Beyond(108.0), Some(5.0)));
+    }
+}

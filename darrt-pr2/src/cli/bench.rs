@@ -1,0 +1,188 @@
+//! `darrt bench`: run, keep, tell.
+
+use std::path::{Path, PathBuf};
+
+use darrt_core::budget::Cancel;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::args::BenchOptions;
+use super::exit::{Exit, Failure};
+use super::output::{self, Output};
+use super::{bench_table, plan};
+use crate::bench::machine::{Machine, cores};
+use crate::bench::record::{Key, Record};
+use crate::bench::run as workers;
+use crate::bench::statistics::summaries;
+use crate::bench::variant::VARIANTS;
+use crate::bench::{BenchError, Collection, Job, JobSet, Journal, Shard, Subject, Variant, journal};
+use crate::problem_file::builtin_names;
+use crate::words::counted;
+
+/// Where results go if nothing else is said.
+const DEFAULT_OUT: &str = "bench.jsonl";
+/// What to do when the file of results holds runs under other conditions.
+const REMEDY: &str = "choose another --out, or delete the file";
+
+/// Runs or merges, and tells the results.
+///
+/// # Errors
+/// Bad names, results that do not go together, files that cannot be written; an interruption keeps what is done.
+pub(super) fn run(options: &BenchOptions, output: &mut Output) -> Result<Exit, Failure> {
+    if options.list_variants {
+        output.print(&bench_table::variants())?;
+        return Ok(Exit::Solved);
+    }
+    let told = Told::choose(options)?;
+    let (all, end) = if options.merge.is_empty() { measure(options, output)? } else { (merge(options)?, End::All) };
+    told.write(&all)?;
+    if !options.quiet {
+        output.print(&bench_table::table(&summaries(&all)))?;
+        output.print(&told.words())?;
+    }
+    match end {
+        End::All => Ok(Exit::Solved),
+        End::Interrupted { left } => {
+            let left = counted(left as u64, "run");
+            Err(Failure::new(Exit::Interrupted, format!("interrupted, {left} left: the same command goes on")))
+        }
+    }
+}
+
+/// How the runs ended.
+enum End {
+    All,
+    Interrupted { left: usize },
+}
+
+/// Does the runs that are not in the file yet; all that were asked for.
+fn measure(options: &BenchOptions, output: &mut Output) -> Result<(Collection, End), Failure> {
+    let set = job_set(options)?;
+    let path = options.out.clone().unwrap_or_else(|| PathBuf::from(DEFAULT_OUT));
+    let path = output::writable(&path)?;
+    let machine = Machine::this(options.jobs.unwrap_or_else(|| (cores() / 2).max(1)));
+    let (mut journal, contents) = Journal::open(&path)?;
+    let jobs: Vec<Job> = set.jobs(options.shard.unwrap_or(Shard::WHOLE)).collect();
+    let mut all = taken_up(&set, &jobs, &machine, contents.records, &path)?;
+    let left: Vec<Job> = jobs.iter().copied().filter(|job| !all.contains(&set.key(*job))).collect();
+    if !options.quiet && !all.is_empty() {
+        let torn = if contents.is_torn { ", a torn last line is dropped" } else { "" };
+        output.print(&format!("{}: {} are done already{torn}", path.display(), counted(all.len() as u64, "run")))?;
+    }
+    let cancel = Cancel::new();
+    plan::listen(&cancel);
+    let progress = Progress::start(left.len(), options.quiet);
+    let mut solved = 0;
+    let name = path.display().to_string();
+    workers::run(&set, &left, &machine, &cancel, |record| {
+        journal.add(&record)?;
+        solved += usize::from(record.solved);
+        progress.advance(solved);
+        all.add(record, &name)
+    })?;
+    progress.0.finish_and_clear();
+    let missing = jobs.len() - all.len();
+    Ok((all, if missing == 0 { End::All } else { End::Interrupted { left: missing } }))
+}
+
+fn job_set(options: &BenchOptions) -> Result<JobSet, Failure> {
+    let builtin = || builtin_names().map(str::to_owned).to_vec();
+    let names = if options.problems.is_empty() { builtin() } else { options.problems.clone() };
+    let subjects = names.iter().map(|name| Subject::open(name)).collect::<Result<Vec<_>, _>>()?;
+    let variants = if options.variants.iter().any(|name| name == "all") {
+        VARIANTS.to_vec()
+    } else {
+        options.variants.iter().map(|name| Variant::named(name)).collect::<Result<Vec<_>, _>>()?
+    };
+    Ok(JobSet::new(subjects, variants, options.seeds.clone(), options.time_limit, options.iterations)?)
+}
+
+/// The runs of the file that were asked for.
+fn taken_up(
+    set: &JobSet,
+    jobs: &[Job],
+    machine: &Machine,
+    records: Vec<Record>,
+    path: &Path,
+) -> Result<Collection, BenchError> {
+    let name = path.display().to_string();
+    let asked: std::collections::BTreeMap<Key, Job> = jobs.iter().map(|job| (set.key(*job), *job)).collect();
+    let mut all = Collection::default();
+    for record in records {
+        let key = record.key();
+        let Some(expected) = asked.get(&key).and_then(|job| set.conditions(job.problem)) else { continue };
+        record.conditions.check(&expected, &key, &name, REMEDY)?;
+        if record.machine.build != machine.build {
+            return Err(BenchError::Conditions {
+                file: name,
+                run: key.to_string(),
+                what: "a program of digest",
+                found: record.machine.build,
+                expected: machine.build.clone(),
+                remedy: REMEDY,
+            });
+        }
+        all.add(record, &name)?;
+    }
+    Ok(all)
+}
+
+/// The results of several files, and the file that they are put into.
+fn merge(options: &BenchOptions) -> Result<Collection, Failure> {
+    let mut all = Collection::default();
+    for path in &options.merge {
+        for record in journal::read(path)?.records {
+            all.add(record, &path.display().to_string())?;
+        }
+    }
+    if let Some(path) = &options.out {
+        let mut text = String::new();
+        for record in all.records() {
+            text.push_str(&serde_json::to_string(record).map_err(|error| Failure::input(error.to_string()))?);
+            text.push('\n');
+        }
+        output::write_file(&output::writable(path)?, &text)?;
+    }
+    Ok(all)
+}
+
+/// The bar on the standard error; on a terminal only.
+struct Progress(ProgressBar);
+
+impl Progress {
+    fn start(runs: usize, is_quiet: bool) -> Self {
+        let target = if is_quiet || runs == 0 { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let bar = ProgressBar::with_draw_target(Some(runs as u64), target);
+        let template = "{bar:32} {pos} of {len} runs{msg}, {elapsed} so far, about {eta} left";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(std::time::Duration::from_millis(500));
+        Self(bar)
+    }
+
+    fn advance(&self, solved: usize) {
+        self.0.inc(1);
+        self.0.set_message(format!(", {solved} solved"));
+    }
+}
+
+/// The files to write besides, checked before the work.
+struct Told {
+    report: Option<PathBuf>,
+}
+
+impl Told {
+    fn choose(options: &BenchOptions) -> Result<Self, Failure> {
+        let report = options.report.as_deref().map(output::writable).transpose()?;
+        Ok(Self { report })
+    }
+
+    fn write(&self, _all: &Collection) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn words(&self) -> String {
+        let report = self.report.iter().map(|path| format!("report:  {}", path.display()));
+        report.collect::<Vec<_>>().join("\n")
+    }
+}
