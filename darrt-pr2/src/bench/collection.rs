@@ -95,8 +95,7 @@ impl Collection {
 
 fn sorted(order: &BTreeMap<String, usize>, known: &[&str]) -> Vec<String> {
     let place = |name: &str| known.iter().position(|other| *other == name).unwrap_or(known.len());
-    let mut names: Vec<(usize, usize, &String)> =
-        order.iter().map(|(name, came)| (place(name), *came, name)).collect();
+    let mut names: Vec<(usize, usize, &String)> = order.iter().map(|(name, came)| (place(name), *came, name)).collect();
     names.sort_unstable();
     names.into_iter().map(|(_, _, name)| name.clone()).collect()
 }

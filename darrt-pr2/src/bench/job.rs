@@ -148,9 +148,8 @@ mod tests {
         let whole: Vec<_> = set.jobs(Shard::WHOLE).collect();
         assert_eq!(whole.len(), 3 * 4 * 17);
         for count in [1, 2, 3, 4, 5, 12] {
-            let shares: Vec<Vec<Job>> = (1..=count)
-                .map(|index| set.jobs(format!("{index}/{count}").parse().unwrap()).collect())
-                .collect();
+            let shares: Vec<Vec<Job>> =
+                (1..=count).map(|index| set.jobs(format!("{index}/{count}").parse().unwrap()).collect()).collect();
             for job in &whole {
                 assert_eq!(shares.iter().flatten().filter(|other| *other == job).count(), 1, "{job:?}");
             }

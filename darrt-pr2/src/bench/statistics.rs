@@ -49,8 +49,7 @@ impl Summary {
         // One group's interval does not depend on which others are there.
         let seed = digest_bits(format!("{}/{}", first.problem, first.variant).as_bytes());
         let steps = runs.iter().filter_map(|run| run.plan.as_ref());
-        let steps: Vec<_> =
-            steps.map(|plan| Observation { value: plan.steps as f64, is_event: true }).collect();
+        let steps: Vec<_> = steps.map(|plan| Observation { value: plan.steps as f64, is_event: true }).collect();
         Some(Self {
             problem: first.problem.clone(),
             variant: first.variant.clone(),

@@ -14,7 +14,7 @@ use crate::bench::record::{Key, Record};
 use crate::bench::run as workers;
 use crate::bench::statistics::summaries;
 use crate::bench::variant::VARIANTS;
-use crate::bench::{BenchError, Collection, Job, JobSet, Journal, Shard, Subject, Variant, journal};
+use crate::bench::{BenchError, Collection, Job, JobSet, Journal, Shard, Subject, Variant, journal, ompl_log, report};
 use crate::problem_file::builtin_names;
 use crate::words::counted;
 
@@ -37,7 +37,10 @@ pub(super) fn run(options: &BenchOptions, output: &mut Output) -> Result<Exit, F
     told.write(&all)?;
     if !options.quiet {
         output.print(&bench_table::table(&summaries(&all)))?;
-        output.print(&told.words())?;
+        let words = told.words();
+        if !words.is_empty() {
+            output.print(&words)?;
+        }
     }
     match end {
         End::All => Ok(Exit::Solved),
@@ -169,20 +172,36 @@ impl Progress {
 /// The files to write besides, checked before the work.
 struct Told {
     report: Option<PathBuf>,
+    logs: Option<PathBuf>,
 }
 
 impl Told {
     fn choose(options: &BenchOptions) -> Result<Self, Failure> {
         let report = options.report.as_deref().map(output::writable).transpose()?;
-        Ok(Self { report })
+        if let Some(folder) = &options.ompl {
+            std::fs::create_dir_all(folder).map_err(|error| {
+                Failure::new(Exit::CannotWrite, format!("{}: cannot be made: {error}", folder.display()))
+            })?;
+        }
+        Ok(Self { report, logs: options.ompl.clone() })
     }
 
-    fn write(&self, _all: &Collection) -> Result<(), Failure> {
+    fn write(&self, all: &Collection) -> Result<(), Failure> {
+        if let Some(path) = &self.report {
+            output::write_file(path, &report::page(all))?;
+        }
+        let Some(folder) = &self.logs else { return Ok(()) };
+        for problem in all.problems(&builtin_names()) {
+            let Some(log) = ompl_log::log(all, &problem) else { continue };
+            let path = output::writable(&folder.join(format!("{}.log", output::file_stem(&problem))))?;
+            output::write_file(&path, &log)?;
+        }
         Ok(())
     }
 
     fn words(&self) -> String {
-        let report = self.report.iter().map(|path| format!("report:  {}", path.display()));
-        report.collect::<Vec<_>>().join("\n")
+        let report = self.report.iter().map(|path| format!("report:    {}", path.display()));
+        let logs = self.logs.iter().map(|path| format!("OMPL logs: {}", path.join("*.log").display()));
+        report.chain(logs).collect::<Vec<_>>().join("\n")
     }
 }

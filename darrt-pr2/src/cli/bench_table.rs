@@ -8,7 +8,16 @@ use crate::bench::variant::VARIANTS;
 /// One row per problem and variant.
 pub(super) fn table(summaries: &[Summary]) -> String {
     let header = [
-        "problem", "variant", "solved", "median s", "95 % interval", "quartiles", "95th", "iterations", "nodes", "restarts",
+        "problem",
+        "variant",
+        "solved",
+        "median s",
+        "95 % interval",
+        "quartiles",
+        "95th",
+        "iterations",
+        "nodes",
+        "restarts",
         "paper s",
     ];
     let mut table = table::with_header(header);
@@ -21,7 +30,11 @@ pub(super) fn table(summaries: &[Summary]) -> String {
     }
     let text = table::finished(table, [2, 3, 4, 5, 6, 7, 8, 9, 10]);
     let is_censored = summaries.iter().any(|summary| summary.solved < summary.runs);
-    let note = if is_censored { "\n> : so many runs ended without a plan that all that is known is a lower bound" } else { "" };
+    let note = if is_censored {
+        "\n> : so many runs ended without a plan that all that is known is a lower bound"
+    } else {
+        ""
+    };
     format!("{}{note}\n", text.trim_end())
 }
 

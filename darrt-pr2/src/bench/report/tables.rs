@@ -1,0 +1,102 @@
+//! The tables of the page.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use darrt_core::observe::accounts::Bucket;
+
+use super::{Row, escaped};
+use crate::bench::statistics::Summary;
+use crate::bench::survival::Quantile;
+
+/// Times, one row per problem and variant.
+pub(super) fn times(summaries: &[Summary]) -> String {
+    let mut text = "<div class=\"wide\"><table>\n<tr><th class=\"name\">problem</th><th class=\"name\">variant</th>\
+                    <th>solved</th><th>median<br>s</th><th>95 %<br>interval</th><th>lower<br>quartile</th>\
+                    <th>upper<br>quartile</th><th>95th per-<br>centile</th><th>mean<br>s</th><th>itera-<br>tions</th>\
+                    <th>nodes</th><th>restarts</th><th>steps</th><th>paper,<br>mean s</th></tr>\n"
+        .to_owned();
+    let mut before = "";
+    for summary in summaries {
+        let is_first = summary.problem != before;
+        before = &summary.problem;
+        let (class, name) = if is_first { (" class=\"first\"", summary.problem.as_str()) } else { ("", "") };
+        let time = |q: f64| cell(summary.time.quantile(q), &summary.time.quantile(q).to_string());
+        let interval = summary
+            .median_interval
+            .map_or_else(|| "<td></td>".to_owned(), |[low, high]| cell(high, &format!("{low} \u{2013} {high}")));
+        let mean = summary.time.restricted_mean();
+        let count = |q: Quantile| {
+            cell(
+                q,
+                &match q {
+                    Quantile::At(count) => format!("{count:.0}"),
+                    Quantile::Beyond(count) => format!("> {count:.0}"),
+                },
+            )
+        };
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "<tr{class}><td class=\"name\">{}</td><td class=\"name\">{}</td><td>{}/{}</td>{}{interval}{}{}{}{}{}{}\
+             <td>{}</td><td>{}</td><td>{}</td></tr>",
+            escaped(name),
+            escaped(&summary.variant),
+            summary.solved,
+            summary.runs,
+            time(0.5),
+            time(0.25),
+            time(0.75),
+            time(0.95),
+            cell(mean, &mean.to_string()),
+            count(summary.iterations),
+            count(summary.nodes),
+            summary.restarts,
+            summary.steps.map_or_else(String::new, |steps| format!("{steps:.0}")),
+            summary.paper_s.map_or_else(String::new, |paper| paper.to_string()),
+        );
+    }
+    text + "</table></div>\n"
+}
+
+/// A number; marked where it is only a lower bound.
+fn cell(quantile: Quantile, words: &str) -> String {
+    let class = if quantile.value().is_some() { "" } else { " class=\"open\"" };
+    format!("<td{class}>{}</td>", escaped(words))
+}
+
+/// How many extensions each primitive ended in which way, a folded table per row.
+pub(super) fn ends(rows: &[Row<'_>]) -> String {
+    rows.iter()
+        .map(|(name, runs)| {
+            let mut names: Vec<&str> = Vec::new();
+            let mut counts: BTreeMap<(&str, &str), u64> = BTreeMap::new();
+            for primitive in runs.iter().flat_map(|run| &run.primitives) {
+                if !names.contains(&primitive.name.as_str()) {
+                    names.push(&primitive.name);
+                }
+                for (end, count) in &primitive.ends {
+                    *counts.entry((end, &primitive.name)).or_default() += count;
+                }
+            }
+            let mut table = "<table>\n<tr><th class=\"name\">ends in</th>".to_owned();
+            for name in &names {
+                let _ = write!(table, "<th>{}</th>", escaped(name).replace('-', "-<wbr>"));
+            }
+            table.push_str("</tr>\n");
+            for end in Bucket::ALL.map(Bucket::heading) {
+                let of = |name: &&str| counts.get(&(end, *name)).copied();
+                if names.iter().any(|name| of(name).is_some()) {
+                    let cells = names
+                        .iter()
+                        .map(|name| of(name).map_or("<td>\u{b7}</td>".to_owned(), |n| format!("<td>{n}</td>")));
+                    let _ = writeln!(table, "<tr><td class=\"name\">{end}</td>{}</tr>", cells.collect::<String>());
+                }
+            }
+            format!(
+                "<details><summary>{}</summary><div class=\"wide\">{table}</table></div></details>\n",
+                escaped(name)
+            )
+        })
+        .collect()
+}
