@@ -7,7 +7,7 @@
 //! | which commands and options are there? | [`args`] |
 //! | how did it end? | [`exit`] |
 //! | how are texts and files written? | `output` |
-//! | what does each command do? | `plan`, `check`, `problems`, `show`, `schema`, `bench` |
+//! | what does each command do? | `plan`, `check`, `problems`, `show`, `schema`, `bench`, `generate` |
 //! | what is seen while it works? | `progress` |
 //! | how are a plan and the planner's counts told? | `steps`, `statistics`, `diagnosis`, `table`, `bench_table` |
 
@@ -17,6 +17,7 @@ mod bench_table;
 mod check;
 mod diagnosis;
 pub mod exit;
+mod generate;
 mod output;
 mod plan;
 mod problems;
@@ -66,6 +67,7 @@ fn dispatch(command: &Command) -> Result<Exit, Failure> {
         Command::Problems(options) => problems::run(options, &mut output),
         Command::Show(options) => show::run(options, &mut output),
         Command::Schema(options) => schema::run(options, &mut output),
+        Command::Generate(options) => generate::run(options, &mut output),
         Command::Bench(options) => bench::run(options, &mut output),
     }
 }

@@ -5,7 +5,7 @@
 //! | what is the PR2? | [`model`], [`arm`], [`forward`], [`gripper`], [`postures`], [`self_collision`] |
 //! | how does it plan? | [`robot`], [`world`], [`planning`] |
 //! | the primitives of paper section 5.1 | [`arm_transit`], [`straight_line_arm_transit`], [`arm_rigid_transfer`], [`base_transit`], [`base_rigid_transfer`], [`pick`](mod@pick), [`place`](mod@place), [`push`](mod@push) |
-//! | what is a problem? | [`problem_file`], [`grasp_families`], [`goal_means`], [`goal_check`] |
+//! | what is a problem? | [`problem_file`], [`mod@generate`], [`grasp_families`], [`goal_means`], [`goal_check`] |
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
 //! | how well does it plan? | [`bench`], [`stopwatch`] |
 //! | how are files read, written and described? | [`text_file`], [`schema`] |
@@ -21,6 +21,7 @@ pub mod cli;
 pub mod export;
 mod file_kind;
 pub mod forward;
+pub mod generate;
 pub mod goal_check;
 pub mod goal_means;
 pub mod grasp_families;

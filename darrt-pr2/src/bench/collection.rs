@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::error::BenchError;
 use super::record::{Conditions, Key, Record};
+use crate::generate;
 
 /// What to do about runs that do not go together.
 const REMEDY: &str = "merge them apart";
@@ -45,7 +46,7 @@ impl Collection {
             }
         }
         let (problems, variants) = (self.order.problems.len(), self.order.variants.len());
-        self.order.problems.entry(key.problem.clone()).or_insert(problems);
+        self.order.problems.entry(group_name(&key.problem)).or_insert(problems);
         self.order.variants.entry(key.variant.clone()).or_insert(variants);
         self.runs.insert(key, (record, file.to_owned()));
         Ok(())
@@ -71,7 +72,7 @@ impl Collection {
         self.runs.values().map(|(record, _)| record)
     }
 
-    /// The problems, in the order of `known` and then of their first run.
+    /// The problems, in the order of `known` and then of their first run; all generated for one family are one.
     pub fn problems(&self, known: &[&str]) -> Vec<String> {
         sorted(&self.order.problems, known)
     }
@@ -81,16 +82,16 @@ impl Collection {
         sorted(&self.order.variants, known)
     }
 
-    /// The runs of one problem with one variant, by seed.
+    /// The runs of one problem, or one family, with one variant, by problem and seed.
     pub fn group<'a>(&'a self, problem: &str, variant: &str) -> Vec<&'a Record> {
         let all = self.records();
-        all.filter(|record| record.problem == problem && record.variant == variant).collect()
+        all.filter(|record| record.variant == variant && group_name(&record.problem) == problem).collect()
     }
+}
 
-    /// The conditions of the runs of a problem.
-    pub fn conditions(&self, problem: &str) -> Option<&Conditions> {
-        self.conditions.get(problem)
-    }
+/// The name under which the runs of a problem are told: its own, or that of the family that it was generated for.
+fn group_name(problem: &str) -> String {
+    generate::family(problem).map_or_else(|| problem.to_owned(), |family| format!("{family}-g*"))
 }
 
 fn sorted(order: &BTreeMap<String, usize>, known: &[&str]) -> Vec<String> {
@@ -141,5 +142,10 @@ mod tests {
         assert_eq!(all.problems(&["plate1", "bowl"]), ["bowl", "mine"]);
         assert_eq!(all.variants(&[]), ["full", "default"]);
         assert_eq!(all.group("mine", "default").len(), 1);
+        for seed in 0..3 {
+            all.add(sample(&format!("bowl-g{seed}"), "full", 0, 0.5, true), "a").unwrap();
+        }
+        assert_eq!(all.problems(&["bowl"]), ["bowl", "mine", "bowl-g*"]);
+        assert_eq!((all.group("bowl-g*", "full").len(), all.group("bowl", "full").len()), (3, 0));
     }
 }

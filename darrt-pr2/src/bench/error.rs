@@ -19,7 +19,7 @@ pub enum BenchError {
         /// The problem.
         problem: String,
         /// Why.
-        source: PlanningError,
+        source: Box<PlanningError>,
     },
     /// No variant has this name.
     #[error("there is no variant `{name}`{}; there are: {}", nearest.as_ref().map_or_else(String::new, |n| format!(", did you mean `{n}`?")), available.join(", "))]
@@ -61,21 +61,8 @@ pub enum BenchError {
         second: String,
     },
     /// Runs of one problem under different conditions.
-    #[error("{file}: {run} was run with {what} {found}, not {expected}: such runs are not put together; {remedy}")]
-    Conditions {
-        /// The file.
-        file: String,
-        /// The run.
-        run: String,
-        /// Which condition.
-        what: &'static str,
-        /// That of the run.
-        found: String,
-        /// That of the others.
-        expected: String,
-        /// What to do.
-        remedy: &'static str,
-    },
+    #[error(transparent)]
+    Conditions(Box<Unlike>),
     /// Another process writes to the file of results.
     #[error("{}: another benchmark is writing to this file", file.display())]
     Locked {
@@ -90,4 +77,28 @@ pub enum BenchError {
         /// What the system says.
         source: std::io::Error,
     },
+}
+
+/// A run that is not put together with others of its problem.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{file}: {run} was run with {what} {found}, not {expected}: such runs are not put together; {remedy}")]
+pub struct Unlike {
+    /// The file.
+    pub file: String,
+    /// The run.
+    pub run: String,
+    /// Which condition.
+    pub what: &'static str,
+    /// That of the run.
+    pub found: String,
+    /// That of the others.
+    pub expected: String,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+impl From<Unlike> for BenchError {
+    fn from(unlike: Unlike) -> Self {
+        Self::Conditions(Box::new(unlike))
+    }
 }

@@ -7,9 +7,11 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use darrt_geom::bounded_file;
+
 use super::error::BenchError;
 use super::record::Record;
-use crate::text_file;
+use crate::text_file::{self, TextFileError};
 
 /// Largest accepted file of results in bytes (1 GiB).
 const MAX_BYTES: u64 = 1 << 30;
@@ -28,24 +30,26 @@ pub struct Contents {
 /// Reads a file of results.
 ///
 /// # Errors
-/// [`BenchError::Unreadable`] when it is not a text of bounded size; [`BenchError::Line`] for the first whole line that is
-/// not the record of a run.
+/// [`BenchError::Unreadable`] when it is not a regular file of bounded size; [`BenchError::Line`] for the first whole line
+/// that is not the record of a run.
 pub fn read(path: &Path) -> Result<Contents, BenchError> {
-    parse(&text_file::read(path, MAX_BYTES)?, &path.display().to_string())
+    let bytes = bounded_file::read_bytes(path, MAX_BYTES).map_err(TextFileError::from)?;
+    parse(&bytes, &path.display().to_string())
 }
 
-fn parse(text: &str, file: &str) -> Result<Contents, BenchError> {
-    let whole = text.rfind('\n').map_or("", |end| text.get(..=end).unwrap_or_default());
+fn parse(bytes: &[u8], file: &str) -> Result<Contents, BenchError> {
+    let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
+    let whole = bytes.get(..end).unwrap_or_default();
     let mut records = Vec::new();
-    for (index, line) in whole.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        let record = serde_json::from_str(line).map_err(|error| BenchError::Line {
+    for (index, line) in whole.split(|byte| *byte == b'\n').enumerate().filter(|(_, line)| !line.is_empty()) {
+        let record = serde_json::from_slice(line).map_err(|error| BenchError::Line {
             file: file.to_owned(),
             line: index + 1,
             message: text_file::one_line(&error.to_string()),
         })?;
         records.push(record);
     }
-    Ok(Contents { records, whole_bytes: whole.len() as u64, is_torn: whole.len() < text.len() })
+    Ok(Contents { records, whole_bytes: whole.len() as u64, is_torn: whole.len() < bytes.len() })
 }
 
 /// A file of results that this process alone writes.
@@ -80,13 +84,12 @@ impl Journal {
     /// # Errors
     /// [`BenchError::Unwritable`].
     pub fn add(&mut self, record: &Record) -> Result<(), BenchError> {
-        let write = || {
+        let mut write = || {
             let mut line = serde_json::to_vec(record).map_err(std::io::Error::other)?;
             line.push(b'\n');
             self.file.write_all(&line)?;
             self.file.sync_data()
         };
-        let mut write = write;
         write().map_err(|source| BenchError::Unwritable { file: self.path.clone(), source })
     }
 }
@@ -100,14 +103,16 @@ mod tests {
     fn a_torn_line_is_cut_off_wherever_the_kill_came() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("r.jsonl");
-        let records: Vec<_> = (0..3).map(|seed| sample("bowl", "default", seed, 0.5, true)).collect();
+        let records: Vec<_> = (0..3).map(|seed| sample("caf\u{e9}", "default", seed, 0.5, true)).collect();
         let (mut journal, contents) = Journal::open(&path).unwrap();
         assert!(contents.records.is_empty() && !contents.is_torn);
-        records.iter().for_each(|record| journal.add(record).unwrap());
+        for record in &records {
+            journal.add(record).unwrap();
+        }
         drop(journal);
         let whole = std::fs::read(&path).unwrap();
         let second_ends = whole.len() - serde_json::to_vec(&records[2]).unwrap().len() - 1;
-        for length in (second_ends..whole.len()).step_by(37).chain([second_ends + 1, whole.len() - 1]) {
+        for length in second_ends..whole.len() {
             std::fs::write(&path, &whole[..length]).unwrap();
             let (mut journal, contents) = Journal::open(&path).unwrap();
             assert_eq!(contents.records, records[..2]);
@@ -120,7 +125,7 @@ mod tests {
     #[test]
     fn a_bad_line_in_the_middle_is_an_error_with_its_number() {
         let line = serde_json::to_string(&sample("bowl", "default", 0, 0.5, true)).unwrap();
-        let message = parse(&format!("{line}\n\n{{]\n{line}\n"), "r.jsonl").unwrap_err().to_string();
+        let message = parse(format!("{line}\n\n{{]\n{line}\n").as_bytes(), "r.jsonl").unwrap_err().to_string();
         assert!(message.starts_with("r.jsonl:3: is not the record of a run: "), "{message}");
     }
 

@@ -47,12 +47,13 @@ fn optional(value: Option<impl ToString>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-/// The log of one problem; its runs with one variant are those of one planner. `None` if the problem has no runs.
+/// The log of one problem or family; its runs with one variant are those of one planner. `None` if the problem has no runs.
 pub fn log(all: &Collection, problem: &str) -> Option<String> {
     let names = all.variants(&VARIANTS.map(|variant| variant.name));
     let groups = names.iter().map(|name| (name, all.group(problem, name)));
     let groups: Vec<_> = groups.filter(|(_, runs)| !runs.is_empty()).collect();
-    let (first, conditions) = (groups.first()?.1.first()?, all.conditions(problem)?);
+    let first = groups.first()?.1.first()?;
+    let conditions = &first.conditions;
     let runs = || groups.iter().flat_map(|(_, runs)| runs);
     let total: f64 = runs().map(|run| run.seconds.total + run.seconds.prepare).sum();
     let started = runs().map(|run| run.started_unix_s).min().unwrap_or(0);

@@ -7,7 +7,7 @@ use darrt_core::budget::Stop;
 use darrt_core::observe::accounts::Bucket;
 use serde::{Deserialize, Serialize};
 
-use super::error::BenchError;
+use super::error::{BenchError, Unlike};
 use super::machine::Machine;
 use super::survival::Observation;
 use crate::picture::{Story, Travel};
@@ -68,7 +68,7 @@ impl Conditions {
             None => Ok(()),
             Some((what, found, expected)) => {
                 let (file, run) = (file.to_owned(), run.to_string());
-                Err(BenchError::Conditions { file, run, what, found, expected, remedy })
+                Err(Unlike { file, run, what, found, expected, remedy }.into())
             }
         }
     }
@@ -213,9 +213,10 @@ impl Record {
         Observation { value, is_event: self.solved }
     }
 
-    /// Seconds until solved, or censored.
+    /// Seconds until solved. A run without a plan is censored at its limit, however late it noticed it.
     pub fn time(&self) -> Observation {
-        self.observation(self.seconds.total)
+        let seconds = self.seconds.total;
+        self.observation(if self.solved { seconds } else { seconds.min(self.conditions.time_limit_s) })
     }
 }
 

@@ -55,7 +55,7 @@ pub fn page(all: &Collection) -> String {
     let look = Look { variants: all.variants(&VARIANTS.map(|variant| variant.name)) };
     let mut problems: Vec<&str> = summaries.iter().map(|summary| summary.problem.as_str()).collect();
     problems.dedup();
-    let axis = LogAxis::over(all.records().map(|run| run.seconds.total));
+    let axis = LogAxis::over(all.records().map(|run| run.time().value));
     let mut body = head(all, &problems, &look);
     section(&mut body, "Times to the solution", &tables::times(&summaries));
     let per_problem = |draw: &dyn Fn(&str, &[&Summary]) -> String| {
@@ -136,7 +136,7 @@ fn head(all: &Collection, problems: &[&str], look: &Look) -> String {
     if machines.len() > 1 {
         text.push_str("<li><b>Times of different machines, loads or programs are put together here.</b></li>\n");
     }
-    let limits: BTreeSet<String> = problems.iter().filter_map(|p| all.conditions(p)).map(limits).collect();
+    let limits: BTreeSet<String> = all.records().map(|run| limits(&run.conditions)).collect();
     let limits = limits.into_iter().collect::<Vec<_>>().join("; ");
     let _ = writeln!(text, "<li>Limits of a run: {}</li>\n</ul>", escaped(&limits));
     text
@@ -192,8 +192,8 @@ ul.legend b { color: #1f2933 }
 .grid { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr)); gap: 14px 20px; align-items: start }
 .grid svg, section > svg { width: 100%; height: auto; display: block }
 .wide { overflow-x: auto }
-table { border-collapse: collapse; font-size: 13.5px; font-variant-numeric: tabular-nums; margin: 8px 0 }
-th, td { padding: 3px 11px; text-align: right; white-space: nowrap }
+table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums; margin: 8px 0 }
+th, td { padding: 3px 8px; text-align: right; white-space: nowrap }
 th { border-bottom: 2px solid #9aa5b1; font-weight: 600; vertical-align: bottom }
 th.name, td.name { text-align: left; padding-left: 0 }
 tr.first td { border-top: 1px solid #cbd2d9 }

@@ -64,7 +64,7 @@ fn one(set: &JobSet, job: Job, machine: &Machine, cancel: &Cancel) -> Result<Opt
     let started = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |time| time.as_secs());
     let mut attempts = Attempts::default();
     let result: PlanResult = planning::plan(&request, cancel, &mut attempts)
-        .map_err(|source| BenchError::Planning { problem: key.problem.clone(), source })?;
+        .map_err(|source| BenchError::Planning { problem: key.problem.clone(), source: Box::new(source) })?;
     let paper = request.problem.paper.as_ref().map(|paper| paper.planning_time_s);
     Ok(Record::of(key, conditions, &result, attempts.ended, (machine.clone(), started), paper))
 }

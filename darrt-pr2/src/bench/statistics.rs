@@ -14,7 +14,7 @@ pub const CONFIDENCE: f64 = 0.95;
 /// The runs of one problem with one variant in numbers. Quantiles are over all runs, those without a plan as censored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
-    /// The problem.
+    /// The problem, or the family of generated ones.
     pub problem: String,
     /// The variant.
     pub variant: String,
@@ -39,19 +39,19 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Of these runs, which are of one problem and variant; `None` without any.
-    pub fn of(runs: &[&Record]) -> Option<Self> {
+    /// Of these runs of `problem` (or a family) with one variant; `None` without any.
+    pub fn of(problem: &str, runs: &[&Record]) -> Option<Self> {
         let first = runs.first()?;
         let values = |value: fn(&Record) -> f64| -> Vec<Observation> {
             runs.iter().map(|run| run.observation(value(run))).collect()
         };
-        let times = values(|run| run.seconds.total);
+        let times: Vec<_> = runs.iter().map(|run| run.time()).collect();
         // One group's interval does not depend on which others are there.
-        let seed = digest_bits(format!("{}/{}", first.problem, first.variant).as_bytes());
+        let seed = digest_bits(format!("{problem}/{}", first.variant).as_bytes());
         let steps = runs.iter().filter_map(|run| run.plan.as_ref());
         let steps: Vec<_> = steps.map(|plan| Observation { value: plan.steps as f64, is_event: true }).collect();
         Some(Self {
-            problem: first.problem.clone(),
+            problem: problem.to_owned(),
             variant: first.variant.clone(),
             runs: runs.len(),
             solved: runs.iter().filter(|run| run.solved).count(),
@@ -71,7 +71,7 @@ pub fn summaries(all: &Collection) -> Vec<Summary> {
     let variants = all.variants(&VARIANTS.map(|variant| variant.name));
     let problems = all.problems(&builtin_names());
     let groups = problems.iter().flat_map(|problem| variants.iter().map(move |variant| (problem, variant)));
-    groups.filter_map(|(problem, variant)| Summary::of(&all.group(problem, variant))).collect()
+    groups.filter_map(|(problem, variant)| Summary::of(problem, &all.group(problem, variant))).collect()
 }
 
 #[cfg(test)]

@@ -55,6 +55,8 @@ pub enum Command {
     Show(ShowOptions),
     /// Print the JSON Schema of problem files or plan files
     Schema(SchemaOptions),
+    /// Make problems like a given one: places, sizes and heights drawn at random
+    Generate(GenerateOptions),
     /// Run problems x variants x seeds and tell the times, as a table, a page and logs
     Bench(BenchOptions),
 }
@@ -171,7 +173,7 @@ every quantile, as longer than the time they had.";
 #[derive(Debug, Args)]
 #[command(after_help = BENCH_EXAMPLES)]
 pub struct BenchOptions {
-    /// Names of built-in problems, or problem files [default: the six of the paper]
+    /// Names of built-in problems, problem files, or folders of them [default: the six of the paper]
     #[arg(value_name = "PROBLEM")]
     pub problems: Vec<String>,
     /// What is changed about the planner, by name, or `all`; `--list-variants` lists them
@@ -209,6 +211,34 @@ pub struct BenchOptions {
     pub ompl: Option<PathBuf>,
     /// Print nothing but errors
     #[arg(short, long)]
+    pub quiet: bool,
+}
+
+const GENERATE_EXAMPLES: &str = "\
+Examples:
+  darrt generate plate3 --seeds 7..8 > mine.toml     one problem
+  darrt generate plate3 --seeds 200 --into many      many/plate3-g0.toml and so on
+  darrt bench many --seeds 1                         how the planner does on them
+
+The same problem and seed give the same file. Every problem is valid and was solved once.";
+
+/// Options of `darrt generate`.
+#[derive(Debug, Args)]
+#[command(after_help = GENERATE_EXAMPLES)]
+pub struct GenerateOptions {
+    /// Name of a built-in problem, or a problem file
+    pub problem: String,
+    /// Seeds from A to B - 1, or how many from 0 on: one problem each
+    #[arg(long, value_name = "A..B", default_value = "1", value_parser = seeds, allow_hyphen_values = true)]
+    pub seeds: Range<u64>,
+    /// Write a file per seed into this folder [default: print the only one]
+    #[arg(long, value_name = "FOLDER")]
+    pub into: Option<PathBuf>,
+    /// Problems that are tried at the same time, 1 to 256 [default: the cores]
+    #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
+    pub jobs: Option<usize>,
+    /// Print nothing but errors
+    #[arg(short, long, requires = "into")]
     pub quiet: bool,
 }
 

@@ -3,18 +3,20 @@
 use std::path::{Path, PathBuf};
 
 use darrt_core::budget::Cancel;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::BenchOptions;
 use super::exit::{Exit, Failure};
 use super::output::{self, Output};
+use super::progress::Bar;
 use super::{bench_table, plan};
+use crate::bench::error::Unlike;
 use crate::bench::machine::{Machine, cores};
 use crate::bench::record::{Key, Record};
 use crate::bench::run as workers;
 use crate::bench::statistics::summaries;
 use crate::bench::variant::VARIANTS;
 use crate::bench::{BenchError, Collection, Job, JobSet, Journal, Shard, Subject, Variant, journal, ompl_log, report};
+use crate::problem_file::builtin::canonical_name;
 use crate::problem_file::builtin_names;
 use crate::words::counted;
 
@@ -73,16 +75,16 @@ fn measure(options: &BenchOptions, output: &mut Output) -> Result<(Collection, E
     }
     let cancel = Cancel::new();
     plan::listen(&cancel);
-    let progress = Progress::start(left.len(), options.quiet);
+    let progress = Bar::start(left.len(), "runs", options.quiet);
     let mut solved = 0;
     let name = path.display().to_string();
     workers::run(&set, &left, &machine, &cancel, |record| {
         journal.add(&record)?;
         solved += usize::from(record.solved);
-        progress.advance(solved);
+        progress.advance(&format!(", {solved} solved"));
         all.add(record, &name)
     })?;
-    progress.0.finish_and_clear();
+    progress.finish();
     let missing = jobs.len() - all.len();
     Ok((all, if missing == 0 { End::All } else { End::Interrupted { left: missing } }))
 }
@@ -90,6 +92,7 @@ fn measure(options: &BenchOptions, output: &mut Output) -> Result<(Collection, E
 fn job_set(options: &BenchOptions) -> Result<JobSet, Failure> {
     let builtin = || builtin_names().map(str::to_owned).to_vec();
     let names = if options.problems.is_empty() { builtin() } else { options.problems.clone() };
+    let names = names.iter().map(|name| opened(name)).collect::<Result<Vec<_>, _>>()?.concat();
     let subjects = names.iter().map(|name| Subject::open(name)).collect::<Result<Vec<_>, _>>()?;
     let variants = if options.variants.iter().any(|name| name == "all") {
         VARIANTS.to_vec()
@@ -97,6 +100,24 @@ fn job_set(options: &BenchOptions) -> Result<JobSet, Failure> {
         options.variants.iter().map(|name| Variant::named(name)).collect::<Result<Vec<_>, _>>()?
     };
     Ok(JobSet::new(subjects, variants, options.seeds.clone(), options.time_limit, options.iterations)?)
+}
+
+/// The problem files in a folder, by name; what is no folder stands for itself.
+fn opened(name: &str) -> Result<Vec<String>, Failure> {
+    let path = Path::new(name);
+    if canonical_name(name).is_some() || !path.is_dir() {
+        return Ok(vec![name.to_owned()]);
+    }
+    let refuse = |reason: String| Failure::input(format!("{name}: {reason}"));
+    let entries = std::fs::read_dir(path).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    let entries = entries.map_err(|error| refuse(format!("cannot be read: {error}")))?;
+    let paths = entries.into_iter().map(|entry| entry.path());
+    let mut files: Vec<_> = paths.filter(|path| path.extension().is_some_and(|ending| ending == "toml")).collect();
+    files.sort();
+    if files.is_empty() {
+        return Err(refuse("holds no problem file (.toml)".to_owned()));
+    }
+    Ok(files.into_iter().map(|path| path.to_string_lossy().into_owned()).collect())
 }
 
 /// The runs of the file that were asked for.
@@ -115,14 +136,15 @@ fn taken_up(
         let Some(expected) = asked.get(&key).and_then(|job| set.conditions(job.problem)) else { continue };
         record.conditions.check(&expected, &key, &name, REMEDY)?;
         if record.machine.build != machine.build {
-            return Err(BenchError::Conditions {
+            let unlike = Unlike {
                 file: name,
                 run: key.to_string(),
                 what: "a program of digest",
                 found: record.machine.build,
                 expected: machine.build.clone(),
                 remedy: REMEDY,
-            });
+            };
+            return Err(unlike.into());
         }
         all.add(record, &name)?;
     }
@@ -146,27 +168,6 @@ fn merge(options: &BenchOptions) -> Result<Collection, Failure> {
         output::write_file(&output::writable(path)?, &text)?;
     }
     Ok(all)
-}
-
-/// The bar on the standard error; on a terminal only.
-struct Progress(ProgressBar);
-
-impl Progress {
-    fn start(runs: usize, is_quiet: bool) -> Self {
-        let target = if is_quiet || runs == 0 { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-        let bar = ProgressBar::with_draw_target(Some(runs as u64), target);
-        let template = "{bar:32} {pos} of {len} runs{msg}, {elapsed} so far, about {eta} left";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(std::time::Duration::from_millis(500));
-        Self(bar)
-    }
-
-    fn advance(&self, solved: usize) {
-        self.0.inc(1);
-        self.0.set_message(format!(", {solved} solved"));
-    }
 }
 
 /// The files to write besides, checked before the work.

@@ -92,7 +92,7 @@ fn dots(runs: &[&Record], y: f64, axis: &LogAxis, area: &Area) -> Element {
     for run in runs.iter().take(MOST_DOTS) {
         // Spread by the golden ratio, so that equal times do not hide each other.
         let spread = (run.seed as f64 * 0.618_033_988_749_895).fract() - 0.5;
-        let at = Point2::new(axis.x(run.seconds.total, area), y + spread * 1.5 * HALF);
+        let at = Point2::new(axis.x(run.time().value, area), y + spread * 1.5 * HALF);
         if run.solved {
             group.append(ink::circle(&at, 1.8, &Ink::filled(palette::TEXT).opacity(0.3)));
         } else {

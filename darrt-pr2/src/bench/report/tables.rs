@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use darrt_core::observe::accounts::Bucket;
 
 use super::{Row, escaped};
+use crate::bench::record::Record;
 use crate::bench::statistics::Summary;
 use crate::bench::survival::Quantile;
 
@@ -67,36 +68,40 @@ fn cell(quantile: Quantile, words: &str) -> String {
 
 /// How many extensions each primitive ended in which way, a folded table per row.
 pub(super) fn ends(rows: &[Row<'_>]) -> String {
-    rows.iter()
-        .map(|(name, runs)| {
-            let mut names: Vec<&str> = Vec::new();
-            let mut counts: BTreeMap<(&str, &str), u64> = BTreeMap::new();
-            for primitive in runs.iter().flat_map(|run| &run.primitives) {
-                if !names.contains(&primitive.name.as_str()) {
-                    names.push(&primitive.name);
-                }
-                for (end, count) in &primitive.ends {
-                    *counts.entry((end, &primitive.name)).or_default() += count;
-                }
-            }
-            let mut table = "<table>\n<tr><th class=\"name\">ends in</th>".to_owned();
-            for name in &names {
-                let _ = write!(table, "<th>{}</th>", escaped(name).replace('-', "-<wbr>"));
-            }
-            table.push_str("</tr>\n");
-            for end in Bucket::ALL.map(Bucket::heading) {
-                let of = |name: &&str| counts.get(&(end, *name)).copied();
-                if names.iter().any(|name| of(name).is_some()) {
-                    let cells = names
-                        .iter()
-                        .map(|name| of(name).map_or("<td>\u{b7}</td>".to_owned(), |n| format!("<td>{n}</td>")));
-                    let _ = writeln!(table, "<tr><td class=\"name\">{end}</td>{}</tr>", cells.collect::<String>());
-                }
-            }
-            format!(
-                "<details><summary>{}</summary><div class=\"wide\">{table}</table></div></details>\n",
-                escaped(name)
-            )
-        })
-        .collect()
+    let mut text = String::new();
+    for (name, runs) in rows {
+        let (name, table) = (escaped(name), ends_of(runs));
+        let _ = writeln!(text, "<details><summary>{name}</summary><div class=\"wide\">{table}</div></details>");
+    }
+    text
+}
+
+fn ends_of(runs: &[&Record]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    let mut counts: BTreeMap<(&str, &str), u64> = BTreeMap::new();
+    for primitive in runs.iter().flat_map(|run| &run.primitives) {
+        if !names.contains(&primitive.name.as_str()) {
+            names.push(&primitive.name);
+        }
+        for (end, count) in &primitive.ends {
+            *counts.entry((end, &primitive.name)).or_default() += count;
+        }
+    }
+    let mut table = "<table>\n<tr><th class=\"name\">ends in</th>".to_owned();
+    for name in &names {
+        let _ = write!(table, "<th>{}</th>", escaped(name).replace('-', "-<wbr>"));
+    }
+    table.push_str("</tr>\n");
+    for end in Bucket::ALL.map(Bucket::heading) {
+        let of = |name: &&str| counts.get(&(end, *name)).copied();
+        if names.iter().any(|name| of(name).is_some()) {
+            let cells = names.iter().map(of).map(|count| match count {
+                Some(count) => format!("<td>{count}</td>"),
+                None => "<td>\u{b7}</td>".to_owned(),
+            });
+            let cells: Vec<_> = cells.collect();
+            let _ = writeln!(table, "<tr><td class=\"name\">{end}</td>{}</tr>", cells.concat());
+        }
+    }
+    table + "</table>"
 }
