@@ -9,6 +9,7 @@
 //! | which problems, variants and seeds, in which order, on which machine? | [`job`], [`variant`], [`shard`] |
 //! | what is one run, and may two be compared? | [`record`], [`machine`], [`digest`] |
 //! | how are runs that ended without a plan counted? | [`survival`], [`bootstrap`], [`statistics`] |
+//! | would restarts help? | [`restarts`] |
 
 pub mod bootstrap;
 pub mod collection;
@@ -20,6 +21,7 @@ pub mod machine;
 pub mod ompl_log;
 pub mod record;
 pub mod report;
+pub mod restarts;
 pub mod run;
 pub mod shard;
 pub mod statistics;

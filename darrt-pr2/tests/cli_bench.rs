@@ -145,3 +145,52 @@ fn bad_usage_is_answered_before_any_run() {
     let (printed, _) = run(folder.path(), &["bench", "--list-variants"], 0);
     assert!(printed.contains("no-reroute") && printed.contains("Algorithm 1 as printed"), "{printed}");
 }
+
+#[test]
+fn generated_problems_are_the_same_again_and_told_as_one_family() {
+    let folder = tempfile::tempdir().unwrap();
+    let (printed, _) = run(folder.path(), &["generate", "bowl", "--seeds", "3", "--into", "many"], 0);
+    assert!(printed.contains("many: 3 problems"), "{printed}");
+    let (printed, _) = run(folder.path(), &["generate", "bowl", "--seeds", "2..3"], 0);
+    assert_eq!(std::fs::read_to_string(folder.path().join("many/bowl-g2.toml")).unwrap(), printed);
+    let command = ["bench", "many", "--seeds", "1", "--iterations", "2000", "--out", "r.jsonl"];
+    let (printed, _) = run(folder.path(), &command, 0);
+    let rows: Vec<_> = printed.lines().filter(|line| line.contains("bowl")).collect();
+    assert!(rows.len() == 1 && rows[0].contains("bowl-g*") && rows[0].contains("/3"), "{printed}");
+    assert_eq!(runs(&folder.path().join("r.jsonl")).len(), 3);
+    std::fs::create_dir(folder.path().join("empty")).unwrap();
+    let (_, complaint) = run(folder.path(), &["bench", "empty"], 2);
+    assert!(complaint.contains("holds no problem file"), "{complaint}");
+    let (_, complaint) = run(folder.path(), &["generate", "bowl", "--seeds", "2"], 2);
+    assert!(complaint.contains("--into FOLDER"), "{complaint}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_keeps_what_is_finished() {
+    let folder = tempfile::tempdir().unwrap();
+    easy_problems(folder.path());
+    // A plate that lies flat cannot be grasped before it is pushed.
+    let text = darrt_pr2::problem_file::builtin_text("plate3").unwrap();
+    let hopeless = text.replacen("name = \"plate3\"", "name = \"hopeless\"", 1).replacen("  \"Push\",\n", "", 1);
+    std::fs::write(folder.path().join("hopeless.toml"), hopeless).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_darrt"))
+        .current_dir(folder.path())
+        .args(["bench", "one.toml", "hopeless.toml", "--seeds", "1", "--jobs", "1", "--time-limit", "600"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let out = folder.path().join("bench.jsonl");
+    let has_line = || std::fs::read_to_string(&out).is_ok_and(|text| text.contains('\n'));
+    while !has_line() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let complaint = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(130), "{complaint}");
+    assert!(complaint.contains("interrupted, 1 run left: the same command goes on"), "{complaint}");
+    assert!(String::from_utf8(output.stdout).unwrap().contains("1/1"), "what is done is told");
+    assert_eq!(runs(&out), ["\"one\"/\"default\"/0"]);
+}

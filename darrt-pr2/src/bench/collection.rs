@@ -91,7 +91,12 @@ impl Collection {
 
 /// The name under which the runs of a problem are told: its own, or that of the family that it was generated for.
 fn group_name(problem: &str) -> String {
-    generate::family(problem).map_or_else(|| problem.to_owned(), |family| format!("{family}-g*"))
+    generate::family(problem).map_or_else(|| problem.to_owned(), family_name)
+}
+
+/// The name under which the runs of all problems of a family are told.
+pub(crate) fn family_name(family: &str) -> String {
+    format!("{family}-g*")
 }
 
 fn sorted(order: &BTreeMap<String, usize>, known: &[&str]) -> Vec<String> {

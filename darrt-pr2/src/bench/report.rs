@@ -56,7 +56,7 @@ pub fn page(all: &Collection) -> String {
     let mut problems: Vec<&str> = summaries.iter().map(|summary| summary.problem.as_str()).collect();
     problems.dedup();
     let axis = LogAxis::over(all.records().map(|run| run.time().value));
-    let mut body = head(all, &problems, &look);
+    let mut body = head(all, &look);
     section(&mut body, "Times to the solution", &tables::times(&summaries));
     let per_problem = |draw: &dyn Fn(&str, &[&Summary]) -> String| {
         let one =
@@ -76,6 +76,7 @@ pub fn page(all: &Collection) -> String {
     let rows: Vec<_> = summaries.iter().map(|s| (name(s), all.group(&s.problem, &s.variant))).collect();
     let swatches = format!("{}{}", swatches(&shares::primitives_legend()), swatches(&shares::work_legend()));
     section(&mut body, "Where the time goes", &format!("{SHARES}{swatches}{}", shares::draw(&rows)));
+    section(&mut body, "Would restarts help?", &format!("{RESTARTS}{}", tables::restarts(&rows)));
     section(&mut body, "Where extensions end", &format!("{ENDS}{}", tables::ends(&rows)));
     section(&mut body, "How to read this", READING);
     format!(
@@ -92,6 +93,9 @@ const BOXES: &str = "<p>Box: quartiles, thick line: median, whiskers: 5th to 95t
 const SHARES: &str = "<p>Means over all runs. Propagation belongs to the primitive that was drawn; collision checks and ways \
     around belong to the kind of motion that was judged, so that the transit before a push counts as a transit. The search \
     for a shorter plan is included.</p>";
+const RESTARTS: &str = "<p>From the iterations that attempts took, those given up as censored: the number of iterations after \
+    which starting over would take the least work to be expected (Luby, Sinclair, Zuckerman 1993). A rough hint, the rougher \
+    the fewer the runs.</p>";
 const ENDS: &str =
     "<p>Every extension of the tree puts every primitive into one row of its column: where it got to.</p>";
 const READING: &str = "<p>A run that ends without a plan does not say how long the problem takes, only that it takes longer \
@@ -99,7 +103,8 @@ const READING: &str = "<p>A run that ends without a plan does not say how long t
     a planner look better than it is. Shares and quantiles are therefore product-limit estimates (Kaplan and Meier) over all \
     runs. <b>&gt; 60</b> means that a quantile lies somewhere beyond 60 s. The interval of the median is where it lies with \
     a confidence of 95 %, by a seeded bootstrap over runs. Means say little about such times, which have long tails; the \
-    mean is given because the paper reports one, and where runs are censored it is a lower bound.</p>\
+    mean is given because the paper reports one, and where runs are censored it is a lower bound. Iterations and nodes are \
+    those within which half of all runs were solved.</p>\
     <p>Times run from the beginning of the search to the accepted plan; the search for a shorter plan and the verification \
     are included, building the problem is not. Restarts within a run are part of its time. The paper's figures are means \
     of ten trials on the authors' machine of 2012.</p>";
@@ -110,10 +115,11 @@ fn section(body: &mut String, title: &str, content: &str) {
 }
 
 /// Title, what ran and where.
-fn head(all: &Collection, problems: &[&str], look: &Look) -> String {
+fn head(all: &Collection, look: &Look) -> String {
     let solved = all.records().filter(|run| run.solved).count();
     let times = || all.records().map(|run| run.started_unix_s);
     let (first, last) = (times().min().unwrap_or(0), times().max().unwrap_or(0));
+    let problems: BTreeSet<&str> = all.records().map(|run| run.problem.as_str()).collect();
     let versions: BTreeSet<&str> = all.records().map(|run| run.conditions.darrt.as_str()).collect();
     let versions = versions.into_iter().collect::<Vec<_>>().join(", ");
     let mut text = format!(

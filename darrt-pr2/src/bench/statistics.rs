@@ -1,7 +1,7 @@
 //! What is said about the runs of one problem with one variant.
 
 use super::bootstrap;
-use super::collection::Collection;
+use super::collection::{Collection, family_name};
 use super::digest::digest_bits;
 use super::record::Record;
 use super::survival::{Observation, Quantile, Survival};
@@ -26,10 +26,10 @@ pub struct Summary {
     pub time: Survival,
     /// Interval of the median of those seconds, by bootstrap; `None` for a single run.
     pub median_interval: Option<[Quantile; 2]>,
-    /// Median of the iterations.
-    pub iterations: Quantile,
-    /// Median of the nodes.
-    pub nodes: Quantile,
+    /// Iterations within which half of all runs were solved; `None` if fewer were solved.
+    pub iterations: Option<f64>,
+    /// The same of nodes.
+    pub nodes: Option<f64>,
     /// Restarts over all runs.
     pub restarts: u64,
     /// Median steps of the plans that were found; `None` without any.
@@ -42,9 +42,6 @@ impl Summary {
     /// Of these runs of `problem` (or a family) with one variant; `None` without any.
     pub fn of(problem: &str, runs: &[&Record]) -> Option<Self> {
         let first = runs.first()?;
-        let values = |value: fn(&Record) -> f64| -> Vec<Observation> {
-            runs.iter().map(|run| run.observation(value(run))).collect()
-        };
         let times: Vec<_> = runs.iter().map(|run| run.time()).collect();
         // One group's interval does not depend on which others are there.
         let seed = digest_bits(format!("{problem}/{}", first.variant).as_bytes());
@@ -57,8 +54,8 @@ impl Summary {
             solved: runs.iter().filter(|run| run.solved).count(),
             time: Survival::of(&times),
             median_interval: bootstrap::interval(&times, 0.5, CONFIDENCE, seed),
-            iterations: Survival::of(&values(|run| run.iterations as f64)).quantile(0.5),
-            nodes: Survival::of(&values(|run| run.nodes as f64)).quantile(0.5),
+            iterations: half_solved(runs, |run| run.iterations as f64),
+            nodes: half_solved(runs, |run| run.nodes as f64),
             restarts: runs.iter().map(|run| run.restarts).sum(),
             steps: Survival::of(&steps).quantile(0.5).value(),
             paper_s: first.paper_s,
@@ -66,10 +63,21 @@ impl Summary {
     }
 }
 
-/// A summary of every problem and variant that has runs: built-in problems first, then variants in their order.
+/// The least effort with which half of all runs were solved. Runs without a plan count as never: it was the clock that
+/// ended them, so that their own effort is no bound that would be the same for all.
+fn half_solved(runs: &[&Record], effort: fn(&Record) -> f64) -> Option<f64> {
+    let mut efforts: Vec<f64> = runs.iter().map(|run| if run.solved { effort(run) } else { f64::INFINITY }).collect();
+    efforts.sort_by(f64::total_cmp);
+    efforts.get(runs.len().div_ceil(2).checked_sub(1)?).copied().filter(|effort| effort.is_finite())
+}
+
+/// A summary of every problem and variant that has runs: built-in problems first, then families of them, then variants in
+/// their order.
 pub fn summaries(all: &Collection) -> Vec<Summary> {
     let variants = all.variants(&VARIANTS.map(|variant| variant.name));
-    let problems = all.problems(&builtin_names());
+    let families = builtin_names().map(family_name);
+    let known: Vec<&str> = builtin_names().into_iter().chain(families.iter().map(String::as_str)).collect();
+    let problems = all.problems(&known);
     let groups = problems.iter().flat_map(|problem| variants.iter().map(move |variant| (problem, variant)));
     groups.filter_map(|(problem, variant)| Summary::of(problem, &all.group(problem, variant))).collect()
 }
@@ -78,6 +86,19 @@ pub fn summaries(all: &Collection) -> Vec<Summary> {
 mod tests {
     use super::*;
     use crate::bench::record::tests::sample;
+
+    #[test]
+    fn half_of_all_runs_is_half_of_all_runs() {
+        let runs = |solved: [bool; 5]| -> Option<f64> {
+            let all: Vec<_> =
+                (0..5).zip(solved).map(|(seed, solved)| sample("bowl", "full", seed, 1.0, solved)).collect();
+            half_solved(&all.iter().collect::<Vec<_>>(), |run| run.iterations as f64)
+        };
+        assert_eq!(runs([true; 5]), Some(102.0));
+        assert_eq!(runs([true, false, true, false, true]), Some(104.0));
+        assert_eq!(runs([true, false, true, false, false]), None);
+        assert_eq!(half_solved(&[], |_| 1.0), None);
+    }
 
     #[test]
     fn unsolved_runs_count_in_every_quantile() {
@@ -96,6 +117,6 @@ mod tests {
         assert_eq!((bowl.runs, bowl.solved), (9, 4));
         assert_eq!(bowl.time.quantile(0.5), Quantile::Beyond(60.0));
         assert_eq!(bowl.time.quantile(0.25), Quantile::At(3.0));
-        assert_eq!((bowl.iterations, bowl.steps), (Quantile::Beyond(108.0), Some(5.0)));
+        assert_eq!((bowl.iterations, bowl.steps), (None, Some(5.0)));
     }
 }

@@ -140,13 +140,18 @@ impl Survival {
 
     /// The mean up to the largest value seen: the mean itself if nothing is censored, else a bound below it.
     pub fn restricted_mean(&self) -> Quantile {
+        let area = self.area_to(self.last);
+        if self.censored.is_empty() { Quantile::At(area) } else { Quantile::Beyond(area) }
+    }
+
+    /// The mean of the values, each at most `limit`.
+    pub fn area_to(&self, limit: f64) -> f64 {
         let (mut area, mut at, mut left) = (0.0, 0.0, 1.0);
-        for (value, share) in &self.steps {
+        for (value, share) in self.steps.iter().take_while(|(value, _)| *value <= limit) {
             area += (value - at) * left;
             (at, left) = (*value, 1.0 - share);
         }
-        area += (self.last - at).max(0.0) * left;
-        if self.censored.is_empty() { Quantile::At(area) } else { Quantile::Beyond(area) }
+        area + (limit - at).max(0.0) * left
     }
 }
 

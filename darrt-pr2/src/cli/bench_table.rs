@@ -62,11 +62,8 @@ fn range(low: Quantile, high: Quantile) -> String {
     }
 }
 
-fn whole(count: Quantile) -> String {
-    match count {
-        Quantile::At(count) => format!("{count:.0}"),
-        Quantile::Beyond(count) => format!("> {count:.0}"),
-    }
+fn whole(count: Option<f64>) -> String {
+    count.map_or_else(|| "\u{2013}".to_owned(), |count| format!("{count:.0}"))
 }
 
 /// The variants and what they change.

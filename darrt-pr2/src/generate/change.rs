@@ -10,7 +10,7 @@ const CLUTTER_SHIFT: f64 = 0.08;
 const CLUTTER_SCALE: [f64; 2] = [0.8, 1.2];
 /// Share of what stands on tables that is taken away.
 const CLUTTER_GONE: f64 = 0.15;
-/// Most things that are put on the table of the first object.
+/// Most things that are put on the first table on which something stands.
 const CLUTTER_NEW: usize = 2;
 /// Footprint of what is put there, m.
 const NEW_WIDTH: [f64; 2] = [0.06, 0.16];
@@ -33,7 +33,7 @@ const BASE_TURN: f64 = 0.3;
 /// Surfaces that touch within this belong together, m.
 const TOUCH: f64 = 1e-6;
 
-/// A problem like `base`. It may be invalid: bodies are placed without looking. Lengths are whole millimetres.
+/// A problem like `base`. It may be invalid: start and goal are placed without looking. Lengths are whole millimetres.
 pub fn changed(base: &ProblemFile, rng: &mut dyn Rng) -> ProblemFile {
     let mut problem = base.clone();
     raise_tables(&mut problem, rng);
@@ -100,56 +100,91 @@ fn grow(obstacle: &mut Obstacle, rise: f64) {
     }
 }
 
-/// Moves, resizes, takes away and adds what stands on tables.
+/// Moves, resizes, takes away and adds what stands on tables. Nothing hangs over an edge that did not, and what would
+/// stand in something else is taken away.
 fn change_clutter(problem: &mut ProblemFile, rng: &mut dyn Rng) {
-    let is_named = |problem: &ProblemFile, name: &str| {
-        problem.surfaces.iter().any(|surface| surface.carrying_body() == Some(name))
-    };
-    let mut kept = Vec::new();
-    for mut obstacle in problem.obstacles.clone() {
-        if obstacle.standing_on.is_some() && !is_named(problem, &obstacle.name) {
-            // Drawn in any case, so that one decision does not change the numbers of the next.
-            let (is_gone, scale) = (rng.random_bool(CLUTTER_GONE), within(CLUTTER_SCALE, rng));
-            resize(&mut obstacle.shape, scale);
-            for value in obstacle.at.iter_mut().take(2) {
-                *value = rounded(*value + within([-CLUTTER_SHIFT, CLUTTER_SHIFT], rng));
-            }
-            if is_gone {
-                continue;
-            }
-        }
-        kept.push(obstacle);
-    }
-    problem.obstacles = kept;
-    if problem.obstacles.iter().all(|obstacle| obstacle.standing_on.is_none()) {
+    let Some(table) = problem.obstacles.iter().find_map(|obstacle| obstacle.standing_on.clone()) else {
         // An empty table is what the problem is about.
         return;
+    };
+    let mut kept: Vec<Obstacle> = Vec::new();
+    for mut obstacle in problem.obstacles.clone() {
+        let Some(surface) = obstacle.standing_on.clone() else {
+            kept.push(obstacle);
+            continue;
+        };
+        // Drawn in any case, so that one decision does not change the numbers of the next.
+        let (is_gone, scale) = (rng.random_bool(CLUTTER_GONE), within(CLUTTER_SCALE, rng));
+        resize(&mut obstacle.shape, scale);
+        for value in obstacle.at.iter_mut().take(2) {
+            *value = rounded(*value + within([-CLUTTER_SHIFT, CLUTTER_SHIFT], rng));
+        }
+        if let Some(top) = top(problem, &surface) {
+            move_inside(&mut obstacle, top);
+        }
+        if !is_gone && is_free(&obstacle, &kept) {
+            kept.push(obstacle);
+        }
     }
-    let Some((surface, [low, high])) = table_of_clutter(problem) else { return };
     for number in 1..=rng.random_range(0..=CLUTTER_NEW) {
         let [x, y] = [0, 1].map(|_| within(NEW_WIDTH, rng));
         let height = within(NEW_HEIGHT, rng);
-        let at = low.iter().zip(high).map(|(low, high)| rounded(within([low + 0.1, high - 0.1], rng))).collect();
-        problem.obstacles.push(Obstacle {
+        let place = [rng.random::<f64>(), rng.random::<f64>()];
+        let Some([low, high]) = top(problem, &table) else { continue };
+        let at = low.iter().zip(high).zip(place).map(|((low, high), share)| rounded(low + (high - low) * share));
+        let mut thing = Obstacle {
             name: format!("thing {number}"),
             shape: ShapeSpec::Box { size: [x, y, height].map(rounded) },
-            at,
-            standing_on: Some(surface.clone()),
+            at: at.collect(),
+            standing_on: Some(table.clone()),
             yaw: None,
             rpy: None,
             quaternion: None,
-        });
+        };
+        move_inside(&mut thing, [low, high]);
+        if is_free(&thing, &kept) && problem.obstacle(&thing.name).is_none() {
+            kept.push(thing);
+        }
+    }
+    problem.obstacles = kept;
+}
+
+/// The corners of a surface that is the top of an upright box.
+fn top(problem: &ProblemFile, surface: &str) -> Option<[[f64; 2]; 2]> {
+    let table = problem.obstacle(problem.surface(surface)?.top_of.as_deref()?)?;
+    extent(table)?;
+    footprint(table)
+}
+
+/// The corners of what a box covers, as seen from above; `None` for what is no box or is turned.
+fn footprint(obstacle: &Obstacle) -> Option<[[f64; 2]; 2]> {
+    let (ShapeSpec::Box { size: [width, depth, _] }, [x, y, ..]) = (&obstacle.shape, obstacle.at.as_slice()) else {
+        return None;
+    };
+    let is_straight = obstacle.yaw.is_none_or(|yaw| yaw == 0.0);
+    is_straight.then_some([[x - width / 2.0, y - depth / 2.0], [x + width / 2.0, y + depth / 2.0]])
+}
+
+/// Moves a box that hangs over an edge back onto the table.
+fn move_inside(obstacle: &mut Obstacle, [low, high]: [[f64; 2]; 2]) {
+    let Some([from, to]) = footprint(obstacle) else { return };
+    let edges = low.into_iter().zip(high).zip(from.into_iter().zip(to));
+    for (value, ((low, high), (from, to))) in obstacle.at.iter_mut().zip(edges) {
+        if to - from < high - low {
+            *value = rounded(*value + (low - from).max(0.0) - (to - high).max(0.0));
+        }
     }
 }
 
-/// The first surface on which something stands, and its corners, if it is the top of an upright box.
-fn table_of_clutter(problem: &ProblemFile) -> Option<(String, [[f64; 2]; 2])> {
-    let name = problem.obstacles.iter().find_map(|obstacle| obstacle.standing_on.clone())?;
-    let table = problem.obstacle(problem.surface(&name)?.top_of.as_deref()?)?;
-    let (ShapeSpec::Box { size: [width, depth, _] }, [x, y, ..]) = (&table.shape, table.at.as_slice()) else {
-        return None;
+/// Does a box stand apart from all others that stand on the same table?
+fn is_free(obstacle: &Obstacle, others: &[Obstacle]) -> bool {
+    let Some([low, high]) = footprint(obstacle) else { return true };
+    let mut beside = others.iter().filter(|other| other.standing_on == obstacle.standing_on).filter_map(footprint);
+    let is_apart = |[from, to]: [[f64; 2]; 2]| {
+        low.into_iter().zip(to).any(|(low, to)| low >= to)
+            || high.into_iter().zip(from).any(|(high, from)| high <= from)
     };
-    Some((name, [[x - width / 2.0, y - depth / 2.0], [x + width / 2.0, y + depth / 2.0]]))
+    beside.all(is_apart)
 }
 
 /// Makes a shape larger or smaller. The thickness of plates and of the walls of bowls stays, hulls and meshes stay.
@@ -201,6 +236,27 @@ mod tests {
                 }
                 assert!(of("side table").0.abs() < TOUCH);
                 assert_eq!(of("wall far"), (0.0, 2.0), "walls stay");
+            }
+        }
+    }
+
+    #[test]
+    fn things_stand_whole_on_their_table_and_not_in_each_other() {
+        let base = builtin("plate3").unwrap();
+        for seed in 0..60 {
+            let problem = changed(&base, &mut stream(seed, 0, 0, Purpose::Sample));
+            let [low, high] = top(&problem, "central table").unwrap();
+            let things: Vec<_> = problem.obstacles.iter().filter(|o| o.standing_on.is_some()).collect();
+            for (index, thing) in things.iter().enumerate() {
+                let [from, to] = footprint(thing).unwrap();
+                for axis in 0..2 {
+                    assert!(low[axis] <= from[axis] + 1e-3 && to[axis] <= high[axis] + 1e-3, "{seed}: {}", thing.name);
+                }
+                for other in &things[..index] {
+                    let [a, b] = footprint(other).unwrap();
+                    let overlap = |axis: usize| to[axis].min(b[axis]) - from[axis].max(a[axis]);
+                    assert!(overlap(0) <= 0.0 || overlap(1) <= 0.0, "{seed}: {} in {}", thing.name, other.name);
+                }
             }
         }
     }

@@ -55,12 +55,23 @@ pub(crate) const KINDS: [(&str, PrimitiveName); 5] = [
 
 /// A colour written `#rrggbb`, thinned with white: 1 keeps it, 0 is white.
 pub(crate) fn tint(colour: &str, share: f64) -> String {
-    let channel = |at: usize| {
+    let [red, green, blue] = channels(colour).map(|value| (255.0 + (value - 255.0) * share.clamp(0.0, 1.0)).round());
+    format!("rgb({red},{green},{blue})")
+}
+
+/// Is dark text better to read on a colour written `#rrggbb` than white text?
+pub(crate) fn is_light(colour: &str) -> bool {
+    // Luma of the television standard BT.601.
+    let [red, green, blue] = channels(colour);
+    0.299 * red + 0.587 * green + 0.114 * blue > 150.0
+}
+
+/// Red, green and blue of `#rrggbb`, 0 to 255.
+fn channels(colour: &str) -> [f64; 3] {
+    [1, 3, 5].map(|at| {
         let digits = colour.get(at..at + 2).unwrap_or_default();
-        let value = f64::from(u8::from_str_radix(digits, 16).unwrap_or_default());
-        (255.0 + (value - 255.0) * share.clamp(0.0, 1.0)).round()
-    };
-    format!("rgb({},{},{})", channel(1), channel(3), channel(5))
+        f64::from(u8::from_str_radix(digits, 16).unwrap_or_default())
+    })
 }
 
 #[cfg(test)]
@@ -72,5 +83,11 @@ mod tests {
         assert_eq!(tint("#204060", 1.0), "rgb(32,64,96)");
         assert_eq!(tint("#204060", 0.0), "rgb(255,255,255)");
         assert_eq!(tint("#204060", 0.5), "rgb(144,160,176)");
+    }
+
+    #[test]
+    fn text_stands_out_from_its_ground() {
+        assert!(is_light(PAGE) && is_light("#e59aec") && is_light("#f2a93b"));
+        assert!(!is_light(TEXT) && !is_light("#2148d8") && !is_light("#a21caf"));
     }
 }

@@ -89,12 +89,12 @@ fn one(summary: &Summary, y: f64, axis: &LogAxis, area: &Area, colour: &str) -> 
 /// Every run: a dot where it was solved, a triangle that points on where it ended without a plan.
 fn dots(runs: &[&Record], y: f64, axis: &LogAxis, area: &Area) -> Element {
     let mut group = Element::new("g");
-    for run in runs.iter().take(MOST_DOTS) {
+    for (index, run) in runs.iter().take(MOST_DOTS).enumerate() {
         // Spread by the golden ratio, so that equal times do not hide each other.
-        let spread = (run.seed as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        let spread = (index as f64 * 0.618_033_988_749_895).fract() - 0.5;
         let at = Point2::new(axis.x(run.time().value, area), y + spread * 1.5 * HALF);
         if run.solved {
-            group.append(ink::circle(&at, 1.8, &Ink::filled(palette::TEXT).opacity(0.3)));
+            group.append(ink::circle(&at, 2.0, &Ink::filled(palette::TEXT).opacity(0.45)));
         } else {
             let corner = |x: f64, y: f64| Point2::new(at.x + x, at.y + y);
             let triangle = [corner(-3.0, -3.0), corner(3.0, 0.0), corner(-3.0, 3.0)];

@@ -117,8 +117,8 @@ fn bar(parts: &[f64], legend: &[(&str, &str)], total: f64, left: f64, y: f64) ->
         let mut part = ink::group(&format!("{name}: {} s of {} s", rounded(*seconds), rounded(total)));
         part.append(ink::rectangle(&Point2::new(x, y), width, ROW - 4.0, 0.0, &Ink::filled(colour)));
         if width > 30.0 {
-            let (middle, light) = (Point2::new(x + width / 2.0, y + 13.0), colour != &REST.1);
-            let ink_colour = if light { palette::PAGE } else { palette::TEXT };
+            let middle = Point2::new(x + width / 2.0, y + 13.0);
+            let ink_colour = if palette::is_light(colour) { palette::TEXT } else { palette::PAGE };
             let words = format!("{:.0} %", 100.0 * seconds / whole);
             part.append(ink::text(&middle, 10.0, ink_colour, Anchor::Middle, &words));
         }

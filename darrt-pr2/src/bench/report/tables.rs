@@ -7,6 +7,7 @@ use darrt_core::observe::accounts::Bucket;
 
 use super::{Row, escaped};
 use crate::bench::record::Record;
+use crate::bench::restarts;
 use crate::bench::statistics::Summary;
 use crate::bench::survival::Quantile;
 
@@ -27,19 +28,11 @@ pub(super) fn times(summaries: &[Summary]) -> String {
             .median_interval
             .map_or_else(|| "<td></td>".to_owned(), |[low, high]| cell(high, &format!("{low} \u{2013} {high}")));
         let mean = summary.time.restricted_mean();
-        let count = |q: Quantile| {
-            cell(
-                q,
-                &match q {
-                    Quantile::At(count) => format!("{count:.0}"),
-                    Quantile::Beyond(count) => format!("> {count:.0}"),
-                },
-            )
-        };
+        let count = |count: Option<f64>| count.map_or_else(|| "\u{2013}".to_owned(), |count| format!("{count:.0}"));
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "<tr{class}><td class=\"name\">{}</td><td class=\"name\">{}</td><td>{}/{}</td>{}{interval}{}{}{}{}{}{}\
+            "<tr{class}><td class=\"name\">{}</td><td class=\"name\">{}</td><td>{}/{}</td>{}{interval}{}{}{}{}<td>{}</td><td>{}</td>\
              <td>{}</td><td>{}</td><td>{}</td></tr>",
             escaped(name),
             escaped(&summary.variant),
@@ -53,7 +46,7 @@ pub(super) fn times(summaries: &[Summary]) -> String {
             count(summary.iterations),
             count(summary.nodes),
             summary.restarts,
-            summary.steps.map_or_else(String::new, |steps| format!("{steps:.0}")),
+            count(summary.steps),
             summary.paper_s.map_or_else(String::new, |paper| paper.to_string()),
         );
     }
@@ -64,6 +57,27 @@ pub(super) fn times(summaries: &[Summary]) -> String {
 fn cell(quantile: Quantile, words: &str) -> String {
     let class = if quantile.value().is_some() { "" } else { " class=\"open\"" };
     format!("<td{class}>{}</td>", escaped(words))
+}
+
+/// When to start over, one row per group of runs.
+pub(super) fn restarts(rows: &[Row<'_>]) -> String {
+    let mut text =
+        "<div class=\"wide\"><table>\n<tr><th class=\"name\">runs of</th><th>attempts</th><th>start over after\
+                    <br>iterations</th><th>expected<br>iterations</th><th>without<br>restarts</th></tr>\n"
+            .to_owned();
+    for (name, runs) in rows {
+        let Some(advice) = restarts::advice(runs) else { continue };
+        let _ = writeln!(
+            text,
+            "<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{:.0}</td><td>{}</td></tr>",
+            escaped(name),
+            advice.attempts,
+            advice.restart.map_or_else(|| "never".to_owned(), |restart| format!("{restart:.0}")),
+            advice.expected,
+            advice.without.map_or_else(|| "unknown".to_owned(), |without| format!("{without:.0}")),
+        );
+    }
+    text + "</table></div>\n"
 }
 
 /// How many extensions each primitive ended in which way, a folded table per row.
