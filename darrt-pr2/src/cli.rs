@@ -7,14 +7,17 @@
 //! | which commands and options are there? | [`args`] |
 //! | how did it end? | [`exit`] |
 //! | how are texts and files written? | `output` |
-//! | what does each command do? | `plan`, `check`, `problems`, `show`, `schema` |
+//! | what does each command do? | `plan`, `check`, `problems`, `show`, `schema`, `bench`, `generate` |
 //! | what is seen while it works? | `progress` |
-//! | how are a plan and the planner's counts told? | `steps`, `statistics`, `diagnosis`, `table` |
+//! | how are a plan and the planner's counts told? | `steps`, `statistics`, `diagnosis`, `table`, `bench_table` |
 
 pub mod args;
+mod bench;
+mod bench_table;
 mod check;
 mod diagnosis;
 pub mod exit;
+mod generate;
 mod output;
 mod plan;
 mod problems;
@@ -64,5 +67,7 @@ fn dispatch(command: &Command) -> Result<Exit, Failure> {
         Command::Problems(options) => problems::run(options, &mut output),
         Command::Show(options) => show::run(options, &mut output),
         Command::Schema(options) => schema::run(options, &mut output),
+        Command::Generate(options) => generate::run(options, &mut output),
+        Command::Bench(options) => bench::run(options, &mut output),
     }
 }

@@ -5,8 +5,9 @@
 //! | what is the PR2? | [`model`], [`arm`], [`forward`], [`gripper`], [`postures`], [`self_collision`] |
 //! | how does it plan? | [`robot`], [`world`], [`planning`] |
 //! | the primitives of paper section 5.1 | [`arm_transit`], [`straight_line_arm_transit`], [`arm_rigid_transfer`], [`base_transit`], [`base_rigid_transfer`], [`pick`](mod@pick), [`place`](mod@place), [`push`](mod@push) |
-//! | what is a problem? | [`problem_file`], [`grasp_families`], [`goal_means`], [`goal_check`] |
+//! | what is a problem? | [`problem_file`], [`mod@generate`], [`grasp_families`], [`goal_means`], [`goal_check`] |
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
+//! | how well does it plan? | [`bench`], [`stopwatch`] |
 //! | how are files read, written and described? | [`text_file`], [`schema`] |
 //! | what does a person see? | [`cli`], [`picture`] |
 
@@ -15,10 +16,12 @@ pub mod arm_rigid_transfer;
 pub mod arm_transit;
 pub mod base_rigid_transfer;
 pub mod base_transit;
+pub mod bench;
 pub mod cli;
 pub mod export;
 mod file_kind;
 pub mod forward;
+pub mod generate;
 pub mod goal_check;
 pub mod goal_means;
 pub mod grasp_families;
@@ -37,6 +40,7 @@ pub mod push;
 pub mod robot;
 pub mod schema;
 pub mod self_collision;
+pub mod stopwatch;
 pub mod straight_line_arm_transit;
 pub mod text_file;
 pub mod verify;

@@ -23,6 +23,7 @@ use crate::export::Exporter;
 use crate::plan_file::{PlanFile, PlannerFacts, Step};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{DistanceName, PrimitiveName, ProblemFile, SamplerName, Sampling};
+use crate::stopwatch::{Stopwatch, Timed, Times, Watched};
 use crate::verify::{Proof, VerifyOptions, verify_unless};
 use crate::world::{self, Built, World, WorldState};
 
@@ -52,6 +53,8 @@ pub struct PlanRequest {
     pub sampler: Option<SamplerName>,
     /// Which distance picks the node.
     pub distance: Option<DistanceName>,
+    /// Changes the search strategy after all else; `None`: as it is.
+    pub adjust: Option<fn(&mut Strategy<World>)>,
 }
 
 impl PlanRequest {
@@ -66,6 +69,7 @@ impl PlanRequest {
             restart: None,
             sampler: None,
             distance: None,
+            adjust: None,
         }
     }
 }
@@ -91,6 +95,8 @@ pub struct PlanResult {
     pub nearest_to_goal: f64,
     /// Time used.
     pub elapsed: Duration,
+    /// Where the time went.
+    pub times: Times,
     /// The last refusal of the verifier.
     pub last_refusal: Option<String>,
 }
@@ -101,6 +107,7 @@ struct FileVerifier {
     exporter: Arc<Exporter>,
     accepted: Accepted,
     cancel: Cancel,
+    watch: Arc<Stopwatch>,
 }
 
 /// The steps and proofs of all plans that were accepted: one for each thread that came to one, at most.
@@ -116,7 +123,7 @@ impl Verifier<World> for FileVerifier {
             nodes: 0,
         };
         let file = self.exporter.export(m, plan, 0, nobody);
-        match verify_unless(&file, &VerifyOptions::default(), &self.cancel) {
+        match self.watch.verification(|| verify_unless(&file, &VerifyOptions::default(), &self.cancel)) {
             Ok(proof) => {
                 if let Ok(mut accepted) = self.accepted.lock() {
                     accepted.push((file.steps, proof));
@@ -151,6 +158,10 @@ pub fn prepare(file: &ProblemFile) -> Result<Prepared, PlanningError> {
 /// # Errors
 /// As [`prepare`].
 pub fn prepare_unless(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, PlanningError> {
+    prepare_watched(file, cancel, &Stopwatch::start())
+}
+
+fn prepare_watched(file: &ProblemFile, cancel: &Cancel, watch: &Arc<Stopwatch>) -> Result<Prepared, PlanningError> {
     check_companions(file)?;
     crate::goal_means::check_means(file)?;
     let Built { world, start, goal, scene } = world::build(file)?;
@@ -158,14 +169,19 @@ pub fn prepare_unless(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, P
     crate::goal_check::check_goal(&world, &goal, &scene)?;
     let exporter = Arc::new(Exporter::new(file, &world)?);
     let accepted = Accepted::default();
-    let verifier =
-        FileVerifier { exporter: Arc::clone(&exporter), accepted: Arc::clone(&accepted), cancel: cancel.clone() };
+    let verifier = FileVerifier {
+        exporter: Arc::clone(&exporter),
+        accepted: Arc::clone(&accepted),
+        cancel: cancel.clone(),
+        watch: Arc::clone(watch),
+    };
+    let primitives = world::primitives(file).into_iter();
     let problem = Problem::new(Parts {
         domain: world,
         start,
-        goal: Box::new(goal),
-        primitives: world::primitives(file),
-        validity: Box::new(validity),
+        goal: Box::new(Timed { part: goal, watch: Arc::clone(watch) }),
+        primitives: primitives.map(|part| Box::new(Timed { part, watch: Arc::clone(watch) }) as _).collect(),
+        validity: Box::new(Timed { part: validity, watch: Arc::clone(watch) }),
         verifier: Box::new(verifier),
     })?;
     Ok(Prepared { problem, exporter, accepted })
@@ -176,9 +192,14 @@ pub fn prepare_unless(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, P
 /// # Errors
 /// [`PlanningError`] when the problem cannot be planned at all; see [`prepare`].
 pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer) -> Result<PlanResult, PlanningError> {
-    let prepared = prepare_unless(&request.problem, cancel)?;
+    let watch = Stopwatch::start();
+    let prepared = prepare_watched(&request.problem, cancel, &watch)?;
     let (sampler, distance) = chosen(request);
-    let strategy = strategy(&request.problem.sampling, sampler, distance)?;
+    let mut strategy = strategy(&request.problem.sampling, sampler, distance)?;
+    if let Some(adjust) = request.adjust {
+        adjust(&mut strategy);
+    }
+    strategy.reroute = strategy.reroute.map(|part| Box::new(Timed { part, watch: Arc::clone(&watch) }) as _);
     let budget = &request.problem.budget;
     let seconds = Duration::try_from_secs_f64(budget.time_limit_s).ok();
     let options = SolveOptions {
@@ -192,8 +213,11 @@ pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer)
         restart_iterations: request.restart.or(budget.restart_iterations),
         threads: request.threads,
     };
+    let begun = watch.elapsed();
+    let observer = &mut Watched { observer, watch: Arc::clone(&watch) };
     let outcome = solve(&prepared.problem, &strategy, &options, observer);
-    Ok(result(&prepared, request, (sampler, distance), outcome))
+    let times = watch.times(begun, outcome.elapsed, outcome.solution.is_some());
+    Ok(PlanResult { times, ..result(&prepared, request, (sampler, distance), outcome) })
 }
 
 fn result(
@@ -220,6 +244,7 @@ fn result(
         restarts: outcome.restarts,
         nearest_to_goal: outcome.nearest_to_goal,
         elapsed: outcome.elapsed,
+        times: Times::default(),
         last_refusal: outcome.last_refusal,
     }
 }

@@ -1,10 +1,12 @@
 //! Commands and options.
 
+use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::bench::Shard;
 use crate::problem_file::{DistanceName, SamplerName};
 
 /// Most attempts at the same time.
@@ -28,6 +30,7 @@ Examples:
   darrt plan plate3                   solve one; writes plate3.plan.json and plate3.html
   darrt show plate3.plan.json         draw a plan again
   darrt check plate3.plan.json        judge a plan, for example one edited by hand
+  darrt bench                         the paper's table: every problem, ten seeds
   darrt problems --print plate3 > mine.toml
                                       copy a problem, edit it, then: darrt plan mine.toml
 
@@ -52,6 +55,10 @@ pub enum Command {
     Show(ShowOptions),
     /// Print the JSON Schema of problem files or plan files
     Schema(SchemaOptions),
+    /// Make problems like a given one: places, sizes and heights drawn at random
+    Generate(GenerateOptions),
+    /// Run problems x variants x seeds and tell the times, as a table, a page and logs
+    Bench(BenchOptions),
 }
 
 const PLAN_EXAMPLES: &str = "\
@@ -151,6 +158,90 @@ pub struct SchemaOptions {
     pub kind: SchemaKind,
 }
 
+const BENCH_EXAMPLES: &str = "\
+Examples:
+  darrt bench                                       the paper's table, ten seeds each
+  darrt bench plate3 --seeds 0..100 --variants default,no-reroute,euclidean --report page.html
+  darrt bench --variants all --seeds 20 --shard 1/2 --out one.jsonl     on one machine
+  darrt bench --variants all --seeds 20 --shard 2/2 --out two.jsonl     on another
+  darrt bench --merge one.jsonl two.jsonl --report page.html --ompl logs
+
+The same command after an interruption goes on where it stopped. Runs without a plan count in
+every quantile, as longer than the time they had.";
+
+/// Options of `darrt bench`.
+#[derive(Debug, Args)]
+#[command(after_help = BENCH_EXAMPLES)]
+pub struct BenchOptions {
+    /// Names of built-in problems, problem files, or folders of them [default: the six of the paper]
+    #[arg(value_name = "PROBLEM")]
+    pub problems: Vec<String>,
+    /// What is changed about the planner, by name, or `all`; `--list-variants` lists them
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "default")]
+    pub variants: Vec<String>,
+    /// List the variants and end
+    #[arg(long)]
+    pub list_variants: bool,
+    /// Seeds from A to B - 1, or how many from 0 on
+    #[arg(long, value_name = "A..B", default_value = "10", value_parser = seeds, allow_hyphen_values = true)]
+    pub seeds: Range<u64>,
+    /// Stop every run after this many seconds [default: as the problem says]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
+    pub time_limit: Option<Duration>,
+    /// Stop every run after this many iterations [default: as the problem says]
+    #[arg(long, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true)]
+    pub iterations: Option<u64>,
+    /// Runs at the same time, 1 to 256 [default: half the cores, so that runs do not slow each other down]
+    #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
+    pub jobs: Option<usize>,
+    /// Do only this share of the runs: 2/5 is the second of five
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+    /// Add every run to this file, and skip those that it holds [default: bench.jsonl; with --merge: none]
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Run nothing: put the results of these files together
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["problems", "shard", "jobs"])]
+    pub merge: Vec<PathBuf>,
+    /// Write a page with curves and tables here, .html
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
+    /// Write a log for `ompl_benchmark_statistics` per problem into this folder
+    #[arg(long, value_name = "FOLDER")]
+    pub ompl: Option<PathBuf>,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+const GENERATE_EXAMPLES: &str = "\
+Examples:
+  darrt generate plate3 --seeds 7..8 > mine.toml     one problem
+  darrt generate plate3 --seeds 200 --into many      many/plate3-g0.toml and so on
+  darrt bench many --seeds 1                         how the planner does on them
+
+The same problem and seed give the same file. Every problem is valid and was solved once.";
+
+/// Options of `darrt generate`.
+#[derive(Debug, Args)]
+#[command(after_help = GENERATE_EXAMPLES)]
+pub struct GenerateOptions {
+    /// Name of a built-in problem, or a problem file
+    pub problem: String,
+    /// Seeds from A to B - 1, or how many from 0 on: one problem each
+    #[arg(long, value_name = "A..B", default_value = "1", value_parser = seeds, allow_hyphen_values = true)]
+    pub seeds: Range<u64>,
+    /// Write a file per seed into this folder [default: print the only one]
+    #[arg(long, value_name = "FOLDER")]
+    pub into: Option<PathBuf>,
+    /// Problems that are tried at the same time, 1 to 256 [default: the cores]
+    #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
+    pub jobs: Option<usize>,
+    /// Print nothing but errors
+    #[arg(short, long, requires = "into")]
+    pub quiet: bool,
+}
+
 /// The kinds of file with a schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum SchemaKind {
@@ -221,6 +312,16 @@ fn threads(text: &str) -> Result<usize, String> {
     whole(text, 1, MOST_THREADS).and_then(|count| usize::try_from(count).map_err(|error| error.to_string()))
 }
 
+/// `A..B`, or a count of seeds from 0 on; at least one.
+fn seeds(text: &str) -> Result<Range<u64>, String> {
+    let range = match text.split_once("..") {
+        Some((from, to)) => from.parse().ok().zip(to.parse().ok()).map(|(from, to)| from..to),
+        None => text.parse().ok().map(|count| 0..count),
+    };
+    let range = range.filter(|range: &Range<u64>| !range.is_empty());
+    range.ok_or_else(|| "must be a count above 0, or A..B with A below B".to_owned())
+}
+
 /// A positive time in seconds.
 fn seconds(text: &str) -> Result<Duration, String> {
     const MOST: f64 = 1e9;
@@ -256,6 +357,14 @@ mod tests {
         }
         assert!(positive("0").is_err() && threads("257").is_err());
         assert_eq!(threads("256"), Ok(256));
+    }
+
+    #[test]
+    fn seeds_are_a_count_or_a_range() {
+        assert_eq!((seeds("3"), seeds("5..9")), (Ok(0..3), Ok(5..9)));
+        for bad in ["0", "5..5", "9..5", "a..b", "-1..2", "1..=3", ""] {
+            assert!(seeds(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

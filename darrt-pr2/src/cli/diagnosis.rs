@@ -95,6 +95,7 @@ mod tests {
             restarts: 0,
             nearest_to_goal: 1.25,
             elapsed: Duration::from_millis(1500),
+            times: crate::stopwatch::Times::default(),
             last_refusal: Some("too bad".to_owned()),
         };
         let text = explain(&result);

@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use crate::bench::BenchError;
+use crate::generate::GenerateError;
 use crate::picture::PictureError;
 use crate::plan_file::PlanFileError;
 use crate::problem_file::ProblemFileError;
@@ -60,6 +62,26 @@ impl From<ProblemFileError> for Failure {
 impl From<PictureError> for Failure {
     fn from(error: PictureError) -> Self {
         Self::input(error.to_string())
+    }
+}
+
+impl From<BenchError> for Failure {
+    fn from(error: BenchError) -> Self {
+        let exit = match error {
+            BenchError::Unwritable { .. } | BenchError::Locked { .. } => Exit::CannotWrite,
+            _ => Exit::BadInput,
+        };
+        Self::new(exit, on_one_line(&error.to_string()))
+    }
+}
+
+impl From<GenerateError> for Failure {
+    fn from(error: GenerateError) -> Self {
+        let exit = match error {
+            GenerateError::Cancelled => Exit::Interrupted,
+            GenerateError::NoneSolved { .. } => Exit::NotSolved,
+        };
+        Self::new(exit, on_one_line(&error.to_string()))
     }
 }
 

@@ -56,6 +56,7 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
         restart: options.restart,
         sampler: options.sampler.map(Into::into),
         distance: options.distance.map(Into::into),
+        adjust: None,
     }
 }
 
@@ -64,7 +65,7 @@ fn limit(request: &PlanRequest) -> Option<Duration> {
 }
 
 /// Cancels on Ctrl-C and on a request to terminate; without a handler the system's default does it less politely.
-fn listen(cancel: &Cancel) {
+pub(super) fn listen(cancel: &Cancel) {
     let cancel = cancel.clone();
     let _ = ctrlc::set_handler(move || cancel.cancel());
 }

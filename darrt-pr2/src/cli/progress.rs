@@ -1,4 +1,4 @@
-//! The line that shows that the planner works; on a terminal only.
+//! The lines that show that the planner works, and how much is done; on a terminal only.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -52,6 +52,42 @@ impl Progress {
 }
 
 impl Drop for Progress {
+    fn drop(&mut self) {
+        self.finish();
+    }
+}
+
+/// How many of a known number of things are done, and the time that is left for the others.
+#[derive(Debug)]
+pub(super) struct Bar(ProgressBar);
+
+impl Bar {
+    /// A bar for `count` things called `things`; hidden when the standard error is not a terminal or `is_quiet`.
+    pub(super) fn start(count: usize, things: &str, is_quiet: bool) -> Self {
+        let target = if is_quiet || count == 0 { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let bar = ProgressBar::with_draw_target(Some(count as u64), target);
+        let template = "{bar:32} {pos} of {len} {prefix}{msg}, {elapsed} so far, about {eta} left";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        bar.set_prefix(things.to_owned());
+        bar.enable_steady_tick(5 * PERIOD);
+        Self(bar)
+    }
+
+    /// One more is done; `words` are said of all.
+    pub(super) fn advance(&self, words: &str) {
+        self.0.inc(1);
+        self.0.set_message(words.to_owned());
+    }
+
+    /// Takes the bar away.
+    pub(super) fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
+impl Drop for Bar {
     fn drop(&mut self) {
         self.finish();
     }

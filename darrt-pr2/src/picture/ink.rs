@@ -7,42 +7,42 @@ use svg::node::element::Element;
 
 /// How a shape is painted.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ink<'a> {
+pub(crate) struct Ink<'a> {
     /// Colour of the inside; `none` for none.
-    pub(super) fill: &'a str,
+    pub(crate) fill: &'a str,
     /// Opacity of the inside, 0 to 1.
-    pub(super) opacity: f64,
+    pub(crate) opacity: f64,
     /// Colour of the line; `none` for none.
-    pub(super) line: &'a str,
+    pub(crate) line: &'a str,
     /// Width of the line in page units.
-    pub(super) width: f64,
+    pub(crate) width: f64,
     /// Dashes and gaps in page units; empty for a full line.
-    pub(super) dash: &'a str,
+    pub(crate) dash: &'a str,
 }
 
 impl<'a> Ink<'a> {
     /// An opaque inside without a line.
-    pub(super) fn filled(fill: &'a str) -> Self {
+    pub(crate) fn filled(fill: &'a str) -> Self {
         Self { fill, opacity: 1.0, line: "none", width: 0.0, dash: "" }
     }
 
     /// A line without an inside.
-    pub(super) fn lined(line: &'a str, width: f64) -> Self {
+    pub(crate) fn lined(line: &'a str, width: f64) -> Self {
         Self { fill: "none", opacity: 1.0, line, width, dash: "" }
     }
 
     /// The same with this opacity of the inside.
-    pub(super) fn opacity(self, opacity: f64) -> Self {
+    pub(crate) fn opacity(self, opacity: f64) -> Self {
         Self { opacity, ..self }
     }
 
     /// The same with a line.
-    pub(super) fn line(self, line: &'a str, width: f64) -> Self {
+    pub(crate) fn line(self, line: &'a str, width: f64) -> Self {
         Self { line, width, ..self }
     }
 
     /// The same with a dashed line.
-    pub(super) fn dash(self, dash: &'a str) -> Self {
+    pub(crate) fn dash(self, dash: &'a str) -> Self {
         Self { dash, ..self }
     }
 
@@ -65,17 +65,17 @@ impl<'a> Ink<'a> {
 }
 
 /// A number with two decimals at most and no negative zero.
-pub(super) fn rounded(value: f64) -> f64 {
+pub(crate) fn rounded(value: f64) -> f64 {
     (value * 100.0).round() / 100.0 + 0.0
 }
 
 /// A closed polygon.
-pub(super) fn polygon(points: &[Point2<f64>], ink: &Ink<'_>) -> Element {
+pub(crate) fn polygon(points: &[Point2<f64>], ink: &Ink<'_>) -> Element {
     with_points("polygon", points, ink)
 }
 
 /// An open line through points.
-pub(super) fn polyline(points: &[Point2<f64>], ink: &Ink<'_>) -> Element {
+pub(crate) fn polyline(points: &[Point2<f64>], ink: &Ink<'_>) -> Element {
     with_points("polyline", points, ink)
 }
 
@@ -88,7 +88,7 @@ fn with_points(name: &str, points: &[Point2<f64>], ink: &Ink<'_>) -> Element {
 }
 
 /// A circle.
-pub(super) fn circle(centre: &Point2<f64>, radius: f64, ink: &Ink<'_>) -> Element {
+pub(crate) fn circle(centre: &Point2<f64>, radius: f64, ink: &Ink<'_>) -> Element {
     let mut element = Element::new("circle");
     element.assign("cx", rounded(centre.x));
     element.assign("cy", rounded(centre.y));
@@ -98,7 +98,7 @@ pub(super) fn circle(centre: &Point2<f64>, radius: f64, ink: &Ink<'_>) -> Elemen
 }
 
 /// A rectangle from its top left corner, with rounded corners.
-pub(super) fn rectangle(corner: &Point2<f64>, width: f64, height: f64, radius: f64, ink: &Ink<'_>) -> Element {
+pub(crate) fn rectangle(corner: &Point2<f64>, width: f64, height: f64, radius: f64, ink: &Ink<'_>) -> Element {
     let mut element = Element::new("rect");
     element.assign("x", rounded(corner.x));
     element.assign("y", rounded(corner.y));
@@ -113,29 +113,33 @@ pub(super) fn rectangle(corner: &Point2<f64>, width: f64, height: f64, radius: f
 
 /// Where a text is fastened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Anchor {
+pub(crate) enum Anchor {
     /// At its start.
     Start,
     /// At its middle.
     Middle,
+    /// At its end.
+    End,
 }
 
 /// One line of text whose baseline starts, is centred or ends at `at`.
-pub(super) fn text(at: &Point2<f64>, size: f64, colour: &str, anchor: Anchor, content: &str) -> Element {
+pub(crate) fn text(at: &Point2<f64>, size: f64, colour: &str, anchor: Anchor, content: &str) -> Element {
     let mut element = Element::new("text");
     element.assign("x", rounded(at.x));
     element.assign("y", rounded(at.y));
     element.assign("font-size", rounded(size));
     element.assign("fill", colour);
-    if anchor == Anchor::Middle {
-        element.assign("text-anchor", "middle");
+    match anchor {
+        Anchor::Start => {}
+        Anchor::Middle => element.assign("text-anchor", "middle"),
+        Anchor::End => element.assign("text-anchor", "end"),
     }
     element.append(Text::new(clean(content)));
     element
 }
 
 /// Draws the text again in white behind itself, so that it can be read on any ground.
-pub(super) fn haloed(mut element: Element) -> Element {
+pub(crate) fn haloed(mut element: Element) -> Element {
     element.assign("paint-order", "stroke");
     element.assign("stroke", "#ffffff");
     element.assign("stroke-width", 3);
@@ -144,13 +148,13 @@ pub(super) fn haloed(mut element: Element) -> Element {
 }
 
 /// The same text in bold.
-pub(super) fn bold(mut element: Element) -> Element {
+pub(crate) fn bold(mut element: Element) -> Element {
     element.assign("font-weight", "bold");
     element
 }
 
 /// A group with a tip that browsers show under the pointer.
-pub(super) fn group(tip: &str) -> Element {
+pub(crate) fn group(tip: &str) -> Element {
     let mut element = Element::new("g");
     if !tip.is_empty() {
         let mut title = Element::new("title");
@@ -161,12 +165,12 @@ pub(super) fn group(tip: &str) -> Element {
 }
 
 /// Width of a text in page units, roughly.
-pub(super) fn text_width(content: &str, size: f64) -> f64 {
+pub(crate) fn text_width(content: &str, size: f64) -> f64 {
     content.chars().count() as f64 * size * 0.54
 }
 
 /// Breaks a text into lines of about `width` page units, at spaces.
-pub(super) fn wrapped(content: &str, size: f64, width: f64) -> Vec<String> {
+pub(crate) fn wrapped(content: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in content.split_whitespace() {
         match lines.last_mut() {
@@ -181,7 +185,7 @@ pub(super) fn wrapped(content: &str, size: f64, width: f64) -> Vec<String> {
 }
 
 /// The text without characters that XML forbids.
-pub(super) fn clean(content: &str) -> String {
+pub(crate) fn clean(content: &str) -> String {
     content.chars().map(|c| if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') { ' ' } else { c }).collect()
 }
 

@@ -1,0 +1,131 @@
+//! The planner and its ablations by name.
+
+use std::fmt;
+
+use darrt_core::shorten::ShortenOptions;
+
+use super::error::BenchError;
+use crate::planning::PlanRequest;
+use crate::problem_file::suggest::nearest;
+use crate::problem_file::{DistanceName, SamplerName};
+
+/// Metres between two nodes of the tree in `fine-steps`.
+const FINE_STEP: f64 = 0.1;
+
+/// A named change of a planning request.
+#[derive(Clone, Copy)]
+pub struct Variant {
+    /// Its name, for the command line and the records.
+    pub name: &'static str,
+    /// What it changes, for people.
+    pub about: &'static str,
+    change: fn(&mut PlanRequest),
+}
+
+/// All variants; the first is the planner as it is. A new variant is one line here.
+pub const VARIANTS: [Variant; 16] = [
+    variant("default", "as the problem says", |_| {}),
+    variant("robot-or-objects", "samples name the robot or the objects", |r| {
+        r.sampler = Some(SamplerName::RobotOrObjects);
+    }),
+    variant("random-subset", "samples name a random subset of all that moves", |r| {
+        r.sampler = Some(SamplerName::RandomSubset);
+    }),
+    variant("full", "samples name all that moves", |r| r.sampler = Some(SamplerName::Full)),
+    variant("no-goal-bias", "no sample is drawn from the goal", |r| r.problem.sampling.goal_bias = 0.0),
+    variant("half-objects", "half of the samples name the objects", |r| r.problem.sampling.object_share = 0.5),
+    variant("greedy", "distance: the robot visits the objects, nearest first", |r| {
+        r.distance = Some(DistanceName::Greedy);
+    }),
+    variant("euclidean", "distance: the sum of all ways", |r| r.distance = Some(DistanceName::Euclidean)),
+    variant("exact-tour", "distance: the best order of visits", |r| r.distance = Some(DistanceName::ExactTour)),
+    variant("no-reroute", "blocked motions are cut short, no way around is looked for", |r| {
+        r.adjust = Some(|s| s.reroute = None);
+    }),
+    variant("no-penalty", "plain arg min: nodes do not count as farther once tried", |r| {
+        r.adjust = Some(|s| s.try_penalty_m = 0.0);
+    }),
+    variant("no-shortening", "the first plan is taken as it is", |r| {
+        r.adjust = Some(|s| s.shorten = ShortenOptions { extensions: 0 });
+    }),
+    variant("fine-steps", "a node every 0.1 m of travel", |r| r.adjust = Some(|s| s.extend.spacing_m = FINE_STEP)),
+    variant("no-restarts", "one tree until the end", |r| r.problem.budget.restart_iterations = None),
+    variant("restart-300", "a new tree every 300 iterations", |r| r.restart = Some(300)),
+    variant("paper", "Algorithm 1 as printed: straight lines, plain arg min, fine steps, no shortening", |r| {
+        r.sampler = Some(SamplerName::RobotOrObjects);
+        r.distance = Some(DistanceName::Greedy);
+        r.adjust = Some(|s| {
+            s.reroute = None;
+            s.try_penalty_m = 0.0;
+            s.extend.spacing_m = FINE_STEP;
+            s.shorten = ShortenOptions { extensions: 0 };
+        });
+    }),
+];
+
+const fn variant(name: &'static str, about: &'static str, change: fn(&mut PlanRequest)) -> Variant {
+    Variant { name, about, change }
+}
+
+impl Variant {
+    /// The variant of this name.
+    ///
+    /// # Errors
+    /// [`BenchError::UnknownVariant`] with all names and the nearest one.
+    pub fn named(name: &str) -> Result<Self, BenchError> {
+        let names = VARIANTS.map(|variant| variant.name);
+        VARIANTS.into_iter().find(|variant| variant.name == name).ok_or_else(|| BenchError::UnknownVariant {
+            name: name.to_owned(),
+            nearest: nearest(name, names).map(str::to_owned),
+            available: names.to_vec(),
+        })
+    }
+
+    /// Makes the change.
+    pub fn apply(&self, request: &mut PlanRequest) {
+        (self.change)(request);
+    }
+}
+
+impl fmt::Debug for Variant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Variant").field(&self.name).finish()
+    }
+}
+
+impl PartialEq for Variant {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem_file::builtin;
+
+    #[test]
+    fn names_differ_and_find_their_variant() {
+        for (index, variant) in VARIANTS.iter().enumerate() {
+            assert!(VARIANTS[..index].iter().all(|other| other.name != variant.name), "{}", variant.name);
+            assert_eq!(Variant::named(variant.name).unwrap(), *variant);
+        }
+        let message = Variant::named("exact-tuor").unwrap_err().to_string();
+        assert!(message.contains("did you mean `exact-tour`?") && message.contains("no-reroute"), "{message}");
+    }
+
+    #[test]
+    fn changes_reach_the_request() {
+        let mut request = PlanRequest::new(builtin("plate3").unwrap(), 0);
+        Variant::named("full").unwrap().apply(&mut request);
+        Variant::named("no-goal-bias").unwrap().apply(&mut request);
+        assert_eq!((request.sampler, request.problem.sampling.goal_bias), (Some(SamplerName::Full), 0.0));
+        Variant::named("paper").unwrap().apply(&mut request);
+        let sampling = &request.problem.sampling;
+        let mut strategy =
+            crate::planning::strategy(sampling, SamplerName::default(), DistanceName::default()).unwrap();
+        assert!(strategy.reroute.is_some() && strategy.try_penalty_m > 0.0);
+        request.adjust.unwrap()(&mut strategy);
+        assert!(strategy.reroute.is_none() && strategy.try_penalty_m == 0.0 && strategy.shorten.extensions == 0);
+    }
+}

@@ -1,0 +1,226 @@
+//! Where the time of planning goes: primitives, collision checks, ways around, verification, the way to the first plan.
+//!
+//! Every part of a problem that is timed is wrapped; the wrapped part does the same, bit for bit. The times are sums over
+//! all threads. When the first plan was found is exact for one thread, and for several it is that of any of them.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use darrt_core::budget::{Budget, Clock};
+use darrt_core::goal::Goal;
+use darrt_core::motion::Instance;
+use darrt_core::observe::{Event, Observer};
+use darrt_core::partial::PartialState;
+use darrt_core::primitive::{Infeasible, Instances, Primitive};
+use darrt_core::reroute::Reroute;
+use darrt_core::state::State;
+use darrt_core::validity::{Blame, FreePrefix, Validity};
+use rand::Rng;
+
+use crate::world::{World, WorldState};
+
+/// Seconds spent on one primitive.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PrimitiveSeconds {
+    /// In its `propagate`: grasps, contacts, inverse kinematics.
+    pub propagate_s: f64,
+    /// Judging its motions.
+    pub collision_s: f64,
+    /// Looking for ways around for its blocked motions.
+    pub reroute_s: f64,
+}
+
+/// Where the time of one call of [`plan`](crate::planning::plan) went.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Times {
+    /// Building and checking the problem, before the search.
+    pub prepare_s: f64,
+    /// From the beginning of the search to the plan that was accepted in the end, before it was made shorter and
+    /// verified; `None` if none was.
+    pub first_plan_s: Option<f64>,
+    /// Making that plan shorter.
+    pub shortening_s: f64,
+    /// In the verifier, refused plans included.
+    pub verification_s: f64,
+    /// By the name of the primitive, of shortening too. What is missing to the whole is sampling, the nearest node and
+    /// the tree.
+    pub primitives: BTreeMap<&'static str, PrimitiveSeconds>,
+}
+
+/// A state in the goal: when it was found, and how long the verifier had worked before.
+#[derive(Debug, Clone, Copy)]
+struct Hit {
+    at: Duration,
+    verified_before: Duration,
+}
+
+#[derive(Debug, Default)]
+struct Sums {
+    primitives: BTreeMap<&'static str, PrimitiveSeconds>,
+    verification: Duration,
+    hit: Option<Hit>,
+}
+
+/// Takes the times; shared by all that is timed.
+#[derive(Debug)]
+pub(crate) struct Stopwatch {
+    clock: Clock,
+    sums: Mutex<Sums>,
+}
+
+impl Stopwatch {
+    /// Starts.
+    pub(crate) fn start() -> Arc<Self> {
+        Arc::new(Self { clock: Clock::start(&Budget::default()), sums: Mutex::default() })
+    }
+
+    /// Time since the start.
+    pub(crate) fn elapsed(&self) -> Duration {
+        self.clock.elapsed()
+    }
+
+    /// Runs `work` and hands its time to `add`.
+    fn timed<T>(&self, work: impl FnOnce() -> T, add: impl FnOnce(&mut Sums, Duration)) -> T {
+        let before = self.elapsed();
+        let result = work();
+        let spent = self.elapsed().saturating_sub(before);
+        self.with(|sums| add(sums, spent));
+        result
+    }
+
+    fn with<T>(&self, change: impl FnOnce(&mut Sums) -> T) -> T {
+        change(&mut self.sums.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Runs the verifier.
+    pub(crate) fn verification<T>(&self, work: impl FnOnce() -> T) -> T {
+        self.timed(work, |sums, spent| sums.verification += spent)
+    }
+
+    fn note_goal_reached(&self) {
+        let at = self.elapsed();
+        self.with(|sums| {
+            let verified_before = sums.verification;
+            sums.hit.get_or_insert(Hit { at, verified_before });
+        });
+    }
+
+    /// All times of a search that began `prepared` after the start and took `searched`.
+    pub(crate) fn times(&self, prepared: Duration, searched: Duration, is_solved: bool) -> Times {
+        self.with(|sums| {
+            let hit = sums.hit.filter(|_| is_solved);
+            let shortening = hit.map_or(Duration::ZERO, |hit| {
+                let verified = sums.verification.saturating_sub(hit.verified_before);
+                (prepared + searched).saturating_sub(hit.at).saturating_sub(verified)
+            });
+            Times {
+                prepare_s: prepared.as_secs_f64(),
+                first_plan_s: hit.map(|hit| hit.at.saturating_sub(prepared).as_secs_f64()),
+                shortening_s: shortening.as_secs_f64(),
+                verification_s: sums.verification.as_secs_f64(),
+                primitives: sums.primitives.clone(),
+            }
+        })
+    }
+}
+
+/// A part with its stopwatch.
+pub(crate) struct Timed<P> {
+    pub(crate) part: P,
+    pub(crate) watch: Arc<Stopwatch>,
+}
+
+impl Primitive<World> for Timed<Box<dyn Primitive<World>>> {
+    fn name(&self) -> &'static str {
+        self.part.name()
+    }
+
+    fn useful(&self, m: &World, from: &WorldState, to: &PartialState<World>) -> bool {
+        self.part.useful(m, from, to)
+    }
+
+    fn approach(&self, m: &World, from: &WorldState, to: &PartialState<World>) -> Option<f64> {
+        self.part.approach(m, from, to)
+    }
+
+    fn propagate(
+        &self,
+        m: &World,
+        from: &WorldState,
+        to: &PartialState<World>,
+        rng: &mut dyn Rng,
+    ) -> Result<Instances<World>, Infeasible> {
+        let add = |sums: &mut Sums, spent: Duration| {
+            sums.primitives.entry(self.part.name()).or_default().propagate_s += spent.as_secs_f64();
+        };
+        self.watch.timed(|| self.part.propagate(m, from, to, rng), add)
+    }
+}
+
+impl<V: Validity<World>> Validity<World> for Timed<V> {
+    fn check(
+        &self,
+        m: &World,
+        state: &WorldState,
+        contacts: &<World as darrt_core::domain::Domain>::Contacts,
+    ) -> Result<(), Blame> {
+        self.part.check(m, state, contacts)
+    }
+
+    fn free_prefix(&self, m: &World, instance: &Instance<World>, from: &WorldState) -> FreePrefix {
+        let add = |sums: &mut Sums, spent: Duration| {
+            sums.primitives.entry(instance.label).or_default().collision_s += spent.as_secs_f64();
+        };
+        self.watch.timed(|| self.part.free_prefix(m, instance, from), add)
+    }
+}
+
+impl Reroute<World> for Timed<Box<dyn Reroute<World>>> {
+    fn is_free_to_turn(&self, instance: &Instance<World>) -> bool {
+        self.part.is_free_to_turn(instance)
+    }
+
+    fn reroute(
+        &self,
+        m: &World,
+        validity: &dyn Validity<World>,
+        instance: &Instance<World>,
+        from: &WorldState,
+        rng: &mut dyn Rng,
+    ) -> Option<Instance<World>> {
+        let add = |sums: &mut Sums, spent: Duration| {
+            sums.primitives.entry(instance.label).or_default().reroute_s += spent.as_secs_f64();
+        };
+        self.watch.timed(|| self.part.reroute(m, validity, instance, from, rng), add)
+    }
+}
+
+impl<G: Goal<World>> Goal<World> for Timed<G> {
+    fn is_satisfied(&self, m: &World, state: &State<World>) -> bool {
+        let is_satisfied = self.part.is_satisfied(m, state);
+        if is_satisfied {
+            self.watch.note_goal_reached();
+        }
+        is_satisfied
+    }
+
+    fn sample(&self, m: &World, rng: &mut dyn Rng) -> Option<PartialState<World>> {
+        self.part.sample(m, rng)
+    }
+}
+
+/// Hands on what happens; after a refusal the next plan counts as the first.
+pub(crate) struct Watched<'a> {
+    pub(crate) observer: &'a mut dyn Observer,
+    pub(crate) watch: Arc<Stopwatch>,
+}
+
+impl Observer for Watched<'_> {
+    fn on_event(&mut self, event: &Event<'_>) -> std::ops::ControlFlow<()> {
+        if matches!(event, Event::Refused { .. }) {
+            self.watch.with(|sums| sums.hit = None);
+        }
+        self.observer.on_event(event)
+    }
+}
