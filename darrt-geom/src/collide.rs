@@ -206,7 +206,7 @@ impl CollisionModel {
             *pose = *world_from_body;
         }
         if let Some(centre) = poses.centres.get_mut(body.get()) {
-            *centre = origin + axes * registered.centre.coords;
+            *centre = solid::carried(&axes, &origin, &registered.centre);
         }
         let range = registered.solids.clone();
         let (Some(placed), Some(solids)) = (poses.placed.get_mut(range.clone()), self.solids.get(range)) else {

@@ -15,7 +15,6 @@ use std::sync::Arc;
 use rand::Rng;
 
 use super::{Darrt, Planner, Start, Step, Strategy, Unproved};
-use crate::settle::Unsettled;
 use crate::domain::Domain;
 use crate::goal::{Goal, Reach};
 use crate::observe::accounts::Accounts;
@@ -23,6 +22,7 @@ use crate::partial::PartialState;
 use crate::plan::{Plan, Step as PlanStep};
 use crate::problem::Problem;
 use crate::random::{Purpose, stream};
+use crate::settle::Unsettled;
 use crate::state::{ObjectId, State};
 use crate::verify::{Refusal, Solution};
 

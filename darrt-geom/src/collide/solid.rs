@@ -70,11 +70,37 @@ impl Solid {
     #[inline]
     pub(super) fn placed(&self, axes: &Matrix3<f64>, origin: &Vector3<f64>) -> PlacedBox {
         PlacedBox {
-            centre: origin + axes * self.centre.coords,
-            axes: self.axes.map_or(*axes, |own| axes * own),
+            centre: carried(axes, origin, &self.centre),
+            axes: self.axes.as_ref().map_or(*axes, |own| turned(axes, own)),
             half: self.half,
         }
     }
+}
+
+/// A point of a body with these axes (columns) and origin, in the world.
+// OPTIMIZATION: written out, here and below; the general product is a loop over columns that is not inlined everywhere.
+#[inline]
+pub(super) fn carried(axes: &Matrix3<f64>, origin: &Vector3<f64>, p: &Point3<f64>) -> Vector3<f64> {
+    let row = |i: usize| origin[i] + (axes[(i, 0)] * p.x + axes[(i, 1)] * p.y + axes[(i, 2)] * p.z);
+    Vector3::new(row(0), row(1), row(2))
+}
+
+/// The product of two rotations.
+#[inline]
+fn turned(axes: &Matrix3<f64>, own: &Matrix3<f64>) -> Matrix3<f64> {
+    let entry =
+        |i: usize, k: usize| axes[(i, 0)] * own[(0, k)] + axes[(i, 1)] * own[(1, k)] + axes[(i, 2)] * own[(2, k)];
+    Matrix3::new(
+        entry(0, 0),
+        entry(0, 1),
+        entry(0, 2),
+        entry(1, 0),
+        entry(1, 1),
+        entry(1, 2),
+        entry(2, 0),
+        entry(2, 1),
+        entry(2, 2),
+    )
 }
 
 /// A half space of a fixed body, in the world.

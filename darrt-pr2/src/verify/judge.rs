@@ -126,7 +126,7 @@ impl<'a> Judge<'a> {
             _ => Rule::Apart,
         });
         self.robot.link_poses(&state.base, &state.joints, &mut self.links);
-        self.stage.place(&self.robot, &self.links, &state.objects, 0);
+        self.stage.place(&self.robot, &self.links, &state.objects, 0, false);
         self.stage.check(0, 0.0).map_err(|hit| {
             let words = format!("{} and {} collide", hit.names.0, hit.names.1);
             refuse(RefusalKind::Collision, words).about(&hit.names.0, &hit.names.1).at(&hit.place)
@@ -226,6 +226,7 @@ impl<'a> Judge<'a> {
         let mut now = from.clone();
         let mut i = usize::from(!place.is_first());
         let mut gone = 1;
+        let mut is_begun = false;
         while i <= parts {
             let s = i as f64 / parts as f64;
             let time = place.time(s);
@@ -233,12 +234,19 @@ impl<'a> Judge<'a> {
                 return Err(trial.site.refusal(time, RefusalKind::Cancelled, "was being judged when it was cancelled"));
             }
             segment.robot_at(s, &mut now);
-            self.robot.link_poses(&now.base, &now.joints, &mut self.links);
+            // OPTIMIZATION: most of the robot stands while it does not drive.
+            let arm_only = is_begun && segment.from.base == segment.to.base;
+            is_begun = true;
+            if arm_only {
+                self.robot.arm_link_poses(&now.joints, &mut self.links);
+            } else {
+                self.robot.link_poses(&now.base, &now.joints, &mut self.links);
+            }
             self.move_objects(trial, &segment, s, &mut now);
             if i == 0 || i == parts {
                 self.check_rigid(trial, time, &now, if i == 0 { from } else { to })?;
             }
-            self.stage.place(&self.robot, &self.links, &now.objects, gone);
+            self.stage.place(&self.robot, &self.links, &now.objects, gone, arm_only);
             self.check_state(trial, time, &now, way)?;
             // OPTIMIZATION: states at which nothing would be looked at need not be made. The end always is.
             let next = (i + 1 + self.idle_parts(trial, &now, travel_m, parts)).min(parts.max(i + 1));

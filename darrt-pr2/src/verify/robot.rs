@@ -54,6 +54,10 @@ pub(super) struct Robot {
     pub(super) fingers: [usize; 4],
     /// The variable that opens the manipulating hand.
     pub(super) finger_joint: usize,
+    /// Links that move with the manipulating arm or its fingers, in ascending order.
+    arm_links: Vec<usize>,
+    /// Their solids: indices into `solids`.
+    pub(super) arm_solids: Vec<usize>,
 }
 
 impl Robot {
@@ -100,7 +104,23 @@ impl Robot {
         let limits = limits.collect();
         let self_pairs = self_pairs(&tree, &solids, side);
         let table = JointTable::new(&description, &tree);
-        Ok(Self { tree, table, solids, self_pairs, roles, limits, side, tool, fingers, finger_joint })
+        let arm_links = arm_links(&tree, &roles);
+        let on_arm = |(_, solid): &(usize, &LinkSolid)| arm_links.contains(&solid.link);
+        let arm_solids = solids.iter().enumerate().filter(on_arm).map(|(index, _)| index).collect();
+        Ok(Self {
+            tree,
+            table,
+            solids,
+            self_pairs,
+            roles,
+            limits,
+            side,
+            tool,
+            fingers,
+            finger_joint,
+            arm_links,
+            arm_solids,
+        })
     }
 
     /// Name of a variable's joint.
@@ -130,6 +150,12 @@ impl Robot {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
         // Both slices have the tree's own lengths.
         let written = self.tree.forward(joints, &Isometry3::from_parts(Translation3::new(x, y, 0.0), turn), out);
+        debug_assert!(written.is_ok(), "{written:?}");
+    }
+
+    /// [`Robot::link_poses`] when since the last call only the arm and the fingers have moved.
+    pub(super) fn arm_link_poses(&self, joints: &[f64], out: &mut [Isometry3<f64>]) {
+        let written = self.tree.forward_only(joints, &self.arm_links, out);
         debug_assert!(written.is_ok(), "{written:?}");
     }
 
@@ -181,6 +207,20 @@ impl Robot {
     }
 }
 
+/// The links that move with the arm or its fingers, in ascending order.
+fn arm_links(tree: &KinematicTree, roles: &[Role]) -> Vec<usize> {
+    let mut is_moved = vec![false; tree.link_count()];
+    for link in 1..is_moved.len() {
+        let drive = match tree.motion(link) {
+            Some(LinkMotion::Turning { drive, .. } | LinkMotion::Sliding { drive, .. }) => Some(drive),
+            _ => None,
+        };
+        let own = drive.is_some_and(|drive| roles.get(drive.variable) != Some(&Role::Parked));
+        is_moved[link] = own || tree.parent(link).is_some_and(|parent| is_moved[parent]);
+    }
+    is_moved.iter().enumerate().filter(|(_, is_moved)| **is_moved).map(|(link, _)| link).collect()
+}
+
 /// Pairs of solids of links that can meet while the arm on `side` moves.
 fn self_pairs(tree: &KinematicTree, solids: &[LinkSolid], side: Side) -> Vec<(usize, usize)> {
     let mut pairs = Vec::new();
@@ -224,6 +264,25 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_links_of_the_arm_are_all_that_an_arm_moves() {
+        let robot = Robot::new(&builtin("plate1").unwrap()).unwrap();
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(10);
+        let (base, mut now, mut anew) = ([0.3, -0.2, 1.0], Vec::new(), Vec::new());
+        let mut values: Vec<f64> = robot.limits.iter().map(|limit| limit.clamp(0.0)).collect();
+        robot.link_poses(&base, &values, &mut now);
+        for _ in 0..100 {
+            let own =
+                values.iter_mut().zip(&robot.roles).zip(&robot.limits).filter(|((_, role), _)| **role != Role::Parked);
+            own.for_each(|((value, _), limit)| *value = rng.random_range(limit.lower.max(-3.0)..limit.upper.min(3.0)));
+            robot.arm_link_poses(&values, &mut now);
+            robot.link_poses(&base, &values, &mut anew);
+            assert_eq!(now, anew);
+        }
+        let others = robot.solids.len() - robot.arm_solids.len();
+        assert!(robot.arm_solids.len() > 10 && others > 10, "{} of the arm, {others} others", robot.arm_solids.len());
     }
 
     #[test]

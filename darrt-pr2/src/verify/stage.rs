@@ -245,21 +245,36 @@ impl Stage {
         }
     }
 
-    /// Puts links and objects at their places, `parts` parts of the segment farther on.
-    pub(super) fn place(&mut self, robot: &Robot, links: &[Isometry3<f64>], objects: &[Isometry3<f64>], parts: usize) {
+    /// Puts links and objects at their places, `parts` parts of the segment farther on; `arm_only`: of the links only those of
+    /// the arm have moved.
+    pub(super) fn place(
+        &mut self,
+        robot: &Robot,
+        links: &[Isometry3<f64>],
+        objects: &[Isometry3<f64>],
+        parts: usize,
+        arm_only: bool,
+    ) {
         for class in &mut self.classes {
             class.travelled_m += class.part_m * parts as f64;
         }
-        let of_links =
-            robot.solids.iter().map(|s| links.get(s.link).map_or(s.link_from_solid, |l| l * s.link_from_solid));
-        let all = of_links.chain(objects.iter().copied());
-        let places = self.poses.iter_mut().zip(&mut self.centres).zip(&self.solids);
-        for (((pose, centre), solid), new) in places.zip(all) {
-            if *pose != new {
-                *pose = new;
-                *centre = solid.world_centre(pose);
-            }
+        let of_link = |index: usize| {
+            let solid = &robot.solids[index];
+            links.get(solid.link).map_or(solid.link_from_solid, |link| link * solid.link_from_solid)
+        };
+        if arm_only {
+            robot.arm_solids.iter().for_each(|index| self.put(*index, of_link(*index)));
+        } else {
+            (0..robot.solids.len()).for_each(|index| self.put(index, of_link(index)));
         }
+        for (object, pose) in objects.iter().enumerate() {
+            self.put(self.links + object, *pose);
+        }
+    }
+
+    fn put(&mut self, solid: usize, world_from_solid: Isometry3<f64>) {
+        self.centres[solid] = self.solids[solid].world_centre(&world_from_solid);
+        self.poses[solid] = world_from_solid;
     }
 
     /// Looks at every pair that could touch, or be nearer than any other was, since it was last looked at.

@@ -231,6 +231,34 @@ impl KinematicTree {
         }
         Ok(())
     }
+
+    /// Writes the world poses of `links` only, for when all others stand as `out` has them from [`KinematicTree::forward`].
+    ///
+    /// `links`: in ascending order; with a link all links below it. What is no link and the root are passed over.
+    ///
+    /// # Errors
+    /// As [`KinematicTree::forward`].
+    ///
+    /// # Laws
+    /// If only variables have changed that drive joints above `links`, `out` is what `forward` writes, bit for bit.
+    pub fn forward_only(
+        &self,
+        joint_values: &[f64],
+        links: &[usize],
+        out: &mut [Isometry3<f64>],
+    ) -> Result<(), KinematicsError> {
+        expect_length("joint_values", joint_values.len(), self.variables.len())?;
+        expect_length("out", out.len(), self.names.len())?;
+        for &link in links.iter().filter(|link| **link > 0) {
+            let (Some(parent), Some(parent_from_link), Some(motion)) =
+                (self.parent.get(link), self.parent_from_link.get(link), self.motion.get(link))
+            else {
+                continue;
+            };
+            out[link] = out[*parent] * parent_from_link * moved(motion, joint_values);
+        }
+        Ok(())
+    }
 }
 
 /// # Errors
