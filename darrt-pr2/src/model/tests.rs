@@ -93,8 +93,7 @@ fn batch_equals_chain() {
             state
         });
         let values = states.each_ref().map(|state| model.joint_values(state));
-        let rows: Vec<Row> =
-            (0..values[0].len()).map(|v| Row(std::array::from_fn(|lane| values[lane][v]))).collect();
+        let rows: Vec<Row> = (0..values[0].len()).map(|v| Row(std::array::from_fn(|lane| values[lane][v]))).collect();
         let base = [rng.random_range(-3.0..3.0), rng.random_range(-3.0..3.0), rng.random_range(-3.0..3.0)];
         batch.forward(&rows, &PoseLanes::splat(&world_from_base(&base)), &mut out).unwrap();
         for (lane, state) in states.iter().enumerate() {
