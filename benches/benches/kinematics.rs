@@ -1,4 +1,5 @@
-//! The PR2's right arm: forward chain, closed-form inverse, inverse near a configuration. One element is one call.
+//! The PR2's right arm: forward chain, closed-form inverse, inverse near a configuration, each one by one and in batches; base
+//! poses for a tool pose. One element is one configuration, one pair of pose and roll, or one base.
 
 #![allow(
     clippy::unwrap_used,
@@ -19,6 +20,7 @@ use darrt_pr2::arm::many_rolls::RollSolutions;
 use darrt_pr2::arm::{Arm, ArmConfiguration, Side, Solutions};
 use darrt_pr2::forward::{ArmChain, ArmPoses, Frame, world_from_base};
 use darrt_pr2::model::{Pr2Model, WholeBody};
+use darrt_pr2::reachability::Reachability;
 use darrt_pr2::world::WorldState;
 use darrt_primitives::kinematics::lanes::{LANES, Row};
 use darrt_primitives::kinematics::{BatchForward, PoseLanes};
@@ -90,6 +92,27 @@ fn first_free(group: &mut BenchmarkGroup<'_, WallTime>) {
             });
             found.count()
         });
+    });
+}
+
+/// Bases for poses that are reached from somewhere: from a ring around the wrist, from the inverse reachability model
+/// when it knows its slices, and with a slice to be computed for every one.
+fn bases(group: &mut BenchmarkGroup<'_, WallTime>) {
+    let room = Room::new();
+    let ring = room.world.manipulator().clone();
+    let modelled = ring.clone().with_bases_from_reachability();
+    let poses: Vec<_> = room.states(COUNT).iter().map(|state| ring.world_from_tool(&state.robot)).collect();
+    for (name, robot) in [("ring", &ring), ("model", &modelled)] {
+        group.bench_function(format!("base, from the {name}"), |b| {
+            let rng = &mut stream(0);
+            b.iter(|| poses.iter().map(|pose| robot.base_for(black_box(pose), rng)[0]).sum::<f64>());
+        });
+    }
+    group.throughput(Throughput::Elements(1));
+    group.bench_function("base, slice of the model computed", |b| {
+        let rng = &mut stream(0);
+        let mut next = poses.iter().cycle();
+        b.iter(|| Reachability::new(ring.arm(), 0.3).base_for(next.next().unwrap(), rng));
     });
 }
 
@@ -167,6 +190,7 @@ fn kinematics(c: &mut Criterion) {
             pairs.filter(|(pose, q)| arm.inverse_near(black_box(pose), q, 0.3).is_some()).count()
         });
     });
+    bases(&mut group);
     group.finish();
 }
 

@@ -3,6 +3,7 @@
 //! | question | file |
 //! |---|---|
 //! | what is the PR2? | [`model`], [`arm`], [`forward`], [`gripper`], [`postures`], [`self_collision`] |
+//! | from where does the arm reach a pose? | [`reachability`] |
 //! | how does it plan? | [`robot`], [`world`], [`planning`] |
 //! | the primitives of paper section 5.1 | [`arm_transit`], [`straight_line_arm_transit`], [`arm_rigid_transfer`], [`base_transit`], [`base_rigid_transfer`], [`pick`](mod@pick), [`place`](mod@place), [`push`](mod@push) |
 //! | what is a problem? | [`problem_file`], [`mod@generate`], [`grasp_families`], [`goal_means`], [`goal_check`] |
@@ -37,6 +38,7 @@ pub mod planning_error;
 pub mod postures;
 pub mod problem_file;
 pub mod push;
+pub mod reachability;
 pub mod robot;
 pub mod schema;
 pub mod self_collision;

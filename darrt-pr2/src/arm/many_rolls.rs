@@ -6,7 +6,7 @@
 use std::f64::consts::{PI, TAU};
 
 use darrt_primitives::kinematics::JointLimit;
-use darrt_primitives::kinematics::lanes::{LANES, Lanes, Mask, Row, registers};
+use darrt_primitives::kinematics::lanes::{Lanes, Mask, Row, registers};
 use nalgebra::Isometry3;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -26,7 +26,7 @@ struct Branch {
     is_solution: Row,
 }
 
-/// Solutions of one pose for [`LANES`] upper arm rolls; reused from call to call.
+/// Solutions of one pose for [`LANES`](darrt_primitives::kinematics::lanes::LANES) upper arm rolls; reused from call to call.
 #[derive(Debug, Clone)]
 pub struct RollSolutions {
     branches: [Branch; BRANCHES],
@@ -63,7 +63,7 @@ impl RollSolutions {
 }
 
 impl Arm {
-    /// [`inverse`](Self::inverse) for [`LANES`] upper arm rolls (rad) at once; a roll that is no number has no solution.
+    /// [`inverse`](Self::inverse) for [`LANES`](darrt_primitives::kinematics::lanes::LANES) upper arm rolls (rad) at once; a roll that is no number has no solution.
     ///
     /// # Laws
     /// Lane by lane the solutions are those of [`inverse`](Self::inverse) up to rounding, which can decide otherwise only
@@ -73,7 +73,9 @@ impl Arm {
     }
 
     fn run<'a>(&'a self, base_from_tool: &Isometry3<f64>, rolls: &Row, out: &'a mut RollSolutions) -> Run<'a> {
-        let rolls = Row(rolls.0.map(|roll| self.limits[2].wrap(roll, SLACK).unwrap_or(f64::NAN)));
+        let limit = self.limits[2];
+        let inside = |roll| if limit.contains(roll) { roll } else { limit.wrap(roll, SLACK).unwrap_or(f64::NAN) };
+        let rolls = Row(rolls.0.map(inside));
         Run { limits: &self.limits, target: self.target(base_from_tool), rolls, out }
     }
 }

@@ -52,9 +52,11 @@ fn both_arms_find_what_they_reach() {
     for side in Side::BOTH {
         let robot = robot(side, LimitKind::Soft);
         let space = space(&robot);
+        let modelled = robot.clone().with_bases_from_reachability();
         let many = proptest::collection::vec(configs(&space), 64);
         proptest!(config(4, REGRESSIONS), |(many in many, seed in seeds())| {
             check_reaches(&robot, &many, seed, &ReachClaims::default())?;
+            check_reaches(&modelled, &many, seed, &ReachClaims::default())?;
         });
     }
 }

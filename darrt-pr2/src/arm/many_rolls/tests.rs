@@ -1,6 +1,7 @@
 use super::super::tests::{contains, pose_error, random_arm, random_configuration};
 use super::super::{LimitKind, Side};
 use super::*;
+use darrt_primitives::kinematics::lanes::LANES;
 use pulp::Scalar;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
