@@ -224,3 +224,42 @@ impl Observer for Watched<'_> {
         self.observer.on_event(event)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use darrt_core::budget::Cancel;
+    use darrt_core::observe::Silent;
+
+    use super::*;
+    use crate::planning::{PlanRequest, plan};
+    use crate::problem_file::builtin;
+
+    #[test]
+    fn the_parts_fit_into_the_whole() {
+        let result = plan(&PlanRequest::new(builtin("bowl").unwrap(), 0), &Cancel::new(), &mut Silent).unwrap();
+        let (times, whole) = (&result.times, result.elapsed.as_secs_f64());
+        assert!(result.plan.is_some() && times.prepare_s > 0.0 && times.verification_s > 0.0);
+        let in_primitives: f64 = times.primitives.values().map(|p| p.propagate_s + p.collision_s + p.reroute_s).sum();
+        assert!(in_primitives > 0.0 && in_primitives + times.verification_s <= whole, "{times:?} {whole}");
+        assert!(times.first_plan_s.unwrap() + times.shortening_s <= whole, "{times:?} {whole}");
+        let names: Vec<_> = result.accounts.rows().map(|(name, _)| name).collect();
+        assert!(times.primitives.keys().all(|name| names.contains(name)), "{times:?}");
+        assert!(times.primitives["Pick"].propagate_s > 0.0);
+    }
+
+    #[test]
+    fn a_refused_plan_is_not_the_first() {
+        let watch = Stopwatch::start();
+        let mut observer = Watched { observer: &mut Silent, watch: Arc::clone(&watch) };
+        let first_plan = || watch.times(Duration::ZERO, watch.elapsed(), true).first_plan_s;
+        watch.note_goal_reached();
+        let before = first_plan().unwrap();
+        watch.note_goal_reached();
+        assert_eq!(first_plan(), Some(before), "the first time counts");
+        let _ = observer.on_event(&Event::Refused { attempt: 0, reason: "" });
+        assert_eq!(first_plan(), None);
+        watch.note_goal_reached();
+        assert!(first_plan().unwrap() >= before);
+        assert_eq!(watch.times(Duration::ZERO, watch.elapsed(), false).first_plan_s, None);
+    }
+}

@@ -201,7 +201,7 @@ pub struct BenchOptions {
     #[arg(short, long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Run nothing: put the results of these files together
-    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["problems", "shard", "jobs"])]
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["problems", "variants", "seeds", "time_limit", "iterations", "shard", "jobs"])]
     pub merge: Vec<PathBuf>,
     /// Write a page with curves and tables here, .html
     #[arg(long, value_name = "FILE")]
