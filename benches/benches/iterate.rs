@@ -1,6 +1,6 @@
 //! Whole iterations of Algorithm 1: their cost against the size of the tree, and their rate on one and on two threads.
 //!
-//! One element is one iteration. The trees are grown by the planner towards a goal that nothing reaches.
+//! One element is one iteration. The trees of the puck domain are grown by the planner towards a goal that nothing reaches.
 
 #![allow(
     clippy::unwrap_used,

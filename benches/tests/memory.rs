@@ -1,6 +1,9 @@
 //! What the planner allocates for the PR2, counted: bytes for each node of a tree, and allocations along a motion.
 #![allow(clippy::unwrap_used, reason = "a test says no more than that it failed")]
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use allocation_counter::measure;
 use darrt_benches::room::prepared;
 use darrt_benches::{stream, trees};
@@ -44,8 +47,14 @@ fn a_grown_tree_takes_half_a_kilobyte_per_node() {
     let darrt = darrt.unwrap();
     let nodes = darrt.tree().len() as u64;
     let mut instances: Vec<_> =
-        darrt.tree().iter().filter_map(|(_, n)| n.edge.as_ref()).map(|e| std::sync::Arc::as_ptr(&e.instance)).collect();
-    instances.dedup();
+        darrt.tree().iter().filter_map(|(_, n)| n.edge.as_ref()).map(|e| Arc::clone(&e.instance)).collect();
+    instances.dedup_by(|a, b| Arc::ptr_eq(a, b));
+    let mut kinds: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    for instance in &instances {
+        let kind = kinds.entry(instance.label).or_default();
+        *kind = (kind.0 + 1, kind.1 + instance.motion.knots().len());
+    }
+    println!("instances and their waypoints, by kind: {kinds:?}");
     let per_node = u64::try_from(info.bytes_current).unwrap() / nodes;
     println!("{nodes} nodes, {} instances, {per_node} bytes for a node", instances.len());
     assert!(nodes > 1_000 && per_node <= BYTES_PER_NODE, "{per_node} bytes per node");

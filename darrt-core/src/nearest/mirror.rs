@@ -92,12 +92,12 @@ impl Mirror {
         self.scale_m
     }
 
-    /// Lower and upper coordinates of one block; the same for nodes.
-    pub(crate) fn block(&self, level: usize, block: usize) -> Option<(&[Lanes], &[Lanes])> {
+    /// Lower and upper coordinates of the boxes of one block; of nodes, the coordinates alone.
+    pub(crate) fn block(&self, level: usize, block: usize) -> Option<(&[Lanes], Option<&[Lanes]>)> {
         let range = block * self.width..(block + 1) * self.width;
         let level = self.levels.get(level)?;
         let lower = level.lower.get(range.clone())?;
-        Some((lower, if level.upper.is_empty() { lower } else { level.upper.get(range)? }))
+        Some((lower, if level.upper.is_empty() { None } else { Some(level.upper.get(range)?) }))
     }
 
     /// The penalties of the boxes of one block; empty for nodes.
@@ -176,8 +176,8 @@ impl Mirror {
     }
 
     /// Tells that the penalty of the placement of `node` has grown.
-    pub(crate) fn refresh_penalty(&mut self, node: u32, penalties_m: &[f64]) {
-        let Some(slot) = self.slots.get(node as usize) else { return };
+    pub(crate) fn refresh_penalty(&mut self, node: usize, penalties_m: &[f64]) {
+        let Some(slot) = self.slots.get(node) else { return };
         let mut item = *slot as usize / LANES;
         for height in 1..self.levels.len() {
             self.set_penalty(height, item, penalties_m);
@@ -186,8 +186,8 @@ impl Mirror {
     }
 
     /// The block of a node, to see whether two nodes share one.
-    pub(crate) fn block_of(&self, node: u32) -> Option<usize> {
-        self.slots.get(node as usize).map(|slot| *slot as usize / LANES)
+    pub(crate) fn block_of(&self, node: usize) -> Option<usize> {
+        self.slots.get(node).map(|slot| *slot as usize / LANES)
     }
 
     fn set_penalty(&mut self, height: usize, item: usize, penalties_m: &[f64]) {

@@ -20,8 +20,8 @@ pub fn nearest_pruned<D: Domain>(
     bound: impl Fn(&Ways, &mut Lanes),
     measure: impl Fn(&Node<D>) -> f64,
 ) -> Option<NodeId> {
-    let Some(mirror) = tree.mirror() else { return nearest_node_by(tree, measure) };
-    let Some((aim, mut ways)) = Aim::new(m, to, mirror.scale_m()) else { return nearest_node_by(tree, measure) };
+    let aim = tree.mirrors().and_then(|mirrors| Aim::new(m, to, mirrors));
+    let Some((mirror, aim, mut ways)) = aim else { return nearest_node_by(tree, measure) };
     let mut best = Best { least: None, slack_m: aim.slack_m };
     let look = |best: &mut Best, index: u32| {
         if let Some(node) = tree.at(index) {
@@ -42,8 +42,20 @@ pub fn nearest_pruned<D: Domain>(
         aim.look(m, lower, upper, &mut ways);
         bound(&ways, &mut at_least);
         if height == 0 {
-            for (at_least_m, (index, placement)) in at_least.iter().zip(mirror.nodes(block)) {
-                if !best.rules_out(at_least_m + super::mirror::narrow(tree.penalty_at(placement))) {
+            let mut promising = (f32::INFINITY, None);
+            for (lane, (at_least_m, (_, placement))) in at_least.iter_mut().zip(mirror.nodes(block)).enumerate() {
+                *at_least_m += super::mirror::narrow(tree.penalty_at(placement));
+                if *at_least_m < promising.0 {
+                    promising = (*at_least_m, Some(lane));
+                }
+            }
+            // OPTIMIZATION: the most promising node first; it often rules out the rest of the block.
+            let first = promising.1.filter(|_| !best.rules_out(promising.0));
+            if let Some((index, _)) = first.and_then(|lane| mirror.nodes(block).nth(lane)) {
+                look(&mut best, index);
+            }
+            for (lane, (at_least_m, (index, _))) in at_least.iter().zip(mirror.nodes(block)).enumerate() {
+                if Some(lane) != first && !best.rules_out(*at_least_m) {
                     look(&mut best, index);
                 }
             }
@@ -58,7 +70,7 @@ pub fn nearest_pruned<D: Domain>(
             }
         }
     }
-    best.least.and_then(|(_, index)| tree.id_at(index))
+    best.least.and_then(|(_, index)| NodeId::at(index as usize))
 }
 
 /// A block that may hold the nearest node.
