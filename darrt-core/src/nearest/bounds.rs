@@ -15,9 +15,11 @@ pub type Lanes = [f32; LANES];
 
 /// Coordinates of one point.
 const POINT: usize = 3;
-/// Share of the largest coordinate by which a sum of bounds in single precision may be too large: some twenty roundings of
-/// half a unit in the last place of 2^-23.
-const ROUNDING: f64 = 2e-6;
+/// Single precision loses up to half of 2^-23 of the largest coordinate, of a node and of a target, along each of at most 64
+/// coordinates: so much of it, in all, is taken off every distance.
+const LOST: f64 = 2e-6;
+/// And so much of the distance itself for the squares, their sum and the root.
+const KEPT: f32 = 1.0 - 4e-6;
 
 /// The mirrors of a tree. Targets for objects and targets for the robot alone constrain different coordinates, and a mirror
 /// that is sorted by both serves neither.
@@ -79,7 +81,7 @@ pub struct Ways {
 pub struct ObjectWay {
     /// Which.
     pub id: ObjectId,
-    /// If its way is at least this many metres, it is certainly not where it should be.
+    /// If its way is more than this many metres, it is certainly not where it should be.
     pub open_m: f32,
     /// Metres to its target, at least.
     pub way_m: Lanes,
@@ -93,8 +95,8 @@ pub(crate) struct Aim {
     objects: SmallVec<[(usize, [f32; POINT]); 2]>,
     /// Row and value.
     robot: SmallVec<[(usize, f32); 16]>,
-    /// By how much a bound may be too large, metres.
-    pub(crate) slack_m: f64,
+    /// Metres that rounding may have added to the distance between a node and the target.
+    lost_m: f32,
 }
 
 impl Aim {
@@ -126,16 +128,15 @@ impl Aim {
                 row += 1;
             });
         }
-        let slack_m = ROUNDING * scale_m * (objects.len() + 2) as f64;
         let tolerance_m = |i: usize| m.objects().get(i).map_or(0.0, ComponentSpace::tolerance);
         let way = |(i, _): &(usize, _)| ObjectWay {
             id: ObjectId::new(*i),
-            open_m: narrow((tolerance_m(*i) + slack_m) * (1.0 + 1e-6)),
+            open_m: narrow(tolerance_m(*i) * (1.0 + 1e-6)),
             way_m: [0.0; LANES],
             reach_m: [0.0; LANES],
         };
         let ways = Ways { objects: objects.iter().map(way).collect(), robot_m: to.robot().map(|_| [0.0; LANES]) };
-        is_plain.then_some((mirror, Self { objects, robot, slack_m }, ways))
+        is_plain.then_some((mirror, Self { objects, robot, lost_m: narrow(LOST * scale_m) }, ways))
     }
 
     /// Bounds for nodes at the coordinates `lower`, or for boxes from `lower` to `upper`.
@@ -147,9 +148,10 @@ impl Aim {
                 add_square(Rows::of(lower, upper, row), Rows::of(lower, upper, d), &mut to_tool);
                 add_square_to(Rows::of(lower, upper, row), *x, &mut to_target);
             }
-            root(&to_target, &mut way.way_m);
-            for (reach_m, square) in way.reach_m.iter_mut().zip(&to_tool) {
-                *reach_m = narrow(m.reach_at_least(way.id, f64::from(square.sqrt())));
+            self.root(&to_target, &mut way.way_m);
+            self.root(&to_tool, &mut way.reach_m);
+            for reach_m in &mut way.reach_m {
+                *reach_m = narrow(m.reach_at_least(way.id, f64::from(*reach_m)));
             }
         }
         if let Some(robot_m) = &mut ways.robot_m {
@@ -157,7 +159,15 @@ impl Aim {
             for (row, x) in &self.robot {
                 add_square_to(Rows::of(lower, upper, *row), *x, &mut square);
             }
-            root(&square, robot_m);
+            self.root(&square, robot_m);
+        }
+    }
+
+    /// The roots, rounded down.
+    fn root(&self, squares: &Lanes, out: &mut Lanes) {
+        for (out, square) in out.iter_mut().zip(squares) {
+            let metres = square.sqrt() * KEPT - self.lost_m;
+            *out = if metres > 0.0 { metres } else { 0.0 };
         }
     }
 }
@@ -183,12 +193,6 @@ impl<'a> Rows<'a> {
 
 // The loops below are written so that the compiler makes vector instructions of them: no early ends, and comparisons instead
 // of `max`, which must look for numbers that are none.
-
-fn root(squares: &Lanes, out: &mut Lanes) {
-    for (out, square) in out.iter_mut().zip(squares) {
-        *out = square.sqrt();
-    }
-}
 
 /// Adds the squares of the distances from `x`.
 fn add_square_to(rows: Rows<'_>, x: f32, sum: &mut Lanes) {

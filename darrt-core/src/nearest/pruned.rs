@@ -22,7 +22,7 @@ pub fn nearest_pruned<D: Domain>(
 ) -> Option<NodeId> {
     let aim = tree.mirrors().and_then(|mirrors| Aim::new(m, to, mirrors));
     let Some((mirror, aim, mut ways)) = aim else { return nearest_node_by(tree, measure) };
-    let mut best = Best { least: None, slack_m: aim.slack_m };
+    let mut best = Best { least: None };
     let look = |best: &mut Best, index: u32| {
         if let Some(node) = tree.at(index) {
             best.offer(measure(node) + tree.penalty_m(node), index);
@@ -73,6 +73,9 @@ pub fn nearest_pruned<D: Domain>(
     best.least.and_then(|(_, index)| NodeId::at(index as usize))
 }
 
+/// What is left of a sum of up to a hundred bounds in single precision when all roundings of the sum went up.
+const SUMMED: f64 = 1.0 - 1e-5;
+
 /// A block that may hold the nearest node.
 struct Open {
     at_least_m: f32,
@@ -104,12 +107,11 @@ impl Eq for Open {}
 /// The best node so far.
 struct Best {
     least: Option<(f64, u32)>,
-    slack_m: f64,
 }
 
 impl Best {
     fn rules_out(&self, at_least_m: f32) -> bool {
-        let at_least_m = f64::from(at_least_m) * (1.0 - 1e-6) - self.slack_m;
+        let at_least_m = f64::from(at_least_m) * SUMMED;
         self.least.is_some_and(|(least, _)| at_least_m > least)
     }
 
