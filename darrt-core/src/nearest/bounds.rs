@@ -164,6 +164,7 @@ impl Aim {
     }
 
     /// The roots, rounded down.
+    #[inline]
     fn root(&self, squares: &Lanes, out: &mut Lanes) {
         for (out, square) in out.iter_mut().zip(squares) {
             let metres = square.sqrt() * KEPT - self.lost_m;
@@ -182,6 +183,7 @@ enum Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
+    #[inline]
     fn of(lower: &'a [Lanes], upper: Option<&'a [Lanes]>, row: usize) -> Self {
         match (lower.get(row), upper) {
             (Some(nodes), None) => Self::Nodes(nodes),
@@ -195,6 +197,7 @@ impl<'a> Rows<'a> {
 // of `max`, which must look for numbers that are none.
 
 /// Adds the squares of the distances from `x`.
+#[inline]
 fn add_square_to(rows: Rows<'_>, x: f32, sum: &mut Lanes) {
     match rows {
         Rows::Unknown => {}
@@ -215,6 +218,7 @@ fn add_square_to(rows: Rows<'_>, x: f32, sum: &mut Lanes) {
 }
 
 /// Adds the squares of the gaps between two coordinates.
+#[inline]
 fn add_square(a: Rows<'_>, b: Rows<'_>, sum: &mut Lanes) {
     match (a, b) {
         (Rows::Nodes(a), Rows::Nodes(b)) => {

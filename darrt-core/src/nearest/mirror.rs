@@ -93,6 +93,7 @@ impl Mirror {
     }
 
     /// Lower and upper coordinates of the boxes of one block; of nodes, the coordinates alone.
+    #[inline]
     pub(crate) fn block(&self, level: usize, block: usize) -> Option<(&[Lanes], Option<&[Lanes]>)> {
         let range = block * self.width..(block + 1) * self.width;
         let level = self.levels.get(level)?;
@@ -101,16 +102,19 @@ impl Mirror {
     }
 
     /// The penalties of the boxes of one block; empty for nodes.
+    #[inline]
     pub(crate) fn penalties_m(&self, level: usize, block: usize) -> &[f32] {
         let Some(level) = self.levels.get(level) else { return &[] };
         let end = level.penalties_m.len().min((block + 1) * LANES);
         level.penalties_m.get(block * LANES..end).unwrap_or_default()
     }
 
-    /// The nodes of one block, each with its placement.
-    pub(crate) fn nodes(&self, block: usize) -> impl Iterator<Item = (u32, u32)> {
-        let nodes = self.nodes.iter().skip(block * LANES).take(LANES).copied();
-        nodes.zip(self.placements.iter().skip(block * LANES).copied())
+    /// The nodes of one block, and their placements.
+    #[inline]
+    pub(crate) fn nodes(&self, block: usize) -> (&[u32], &[u32]) {
+        let end = self.nodes.len().min((block + 1) * LANES);
+        let of_block = |all| <[u32]>::get(all, block * LANES..end).unwrap_or_default();
+        (of_block(&self.nodes), of_block(&self.placements))
     }
 
     /// Adds the next node. `penalties_m` are those of all placements.
@@ -366,6 +370,7 @@ impl Mirror {
 
 /// Single precision; what is lost is allowed for where bounds are compared.
 #[allow(clippy::cast_possible_truncation, reason = "rounding is meant")]
+#[inline]
 pub(crate) fn narrow(x: f64) -> f32 {
     x as f32
 }

@@ -43,20 +43,21 @@ pub fn nearest_pruned<D: Domain>(
         bound(&ways, &mut at_least);
         if height == 0 {
             let mut promising = (f32::INFINITY, None);
-            for (lane, (at_least_m, (_, placement))) in at_least.iter_mut().zip(mirror.nodes(block)).enumerate() {
-                *at_least_m += super::mirror::narrow(tree.penalty_at(placement));
+            let (nodes, placements) = mirror.nodes(block);
+            for (lane, (at_least_m, placement)) in at_least.iter_mut().zip(placements).enumerate() {
+                *at_least_m += super::mirror::narrow(tree.penalty_at(*placement));
                 if *at_least_m < promising.0 {
                     promising = (*at_least_m, Some(lane));
                 }
             }
             // OPTIMIZATION: the most promising node first; it often rules out the rest of the block.
             let first = promising.1.filter(|_| !best.rules_out(promising.0));
-            if let Some((index, _)) = first.and_then(|lane| mirror.nodes(block).nth(lane)) {
-                look(&mut best, index);
+            if let Some(index) = first.and_then(|lane| nodes.get(lane)) {
+                look(&mut best, *index);
             }
-            for (lane, (at_least_m, (index, _))) in at_least.iter().zip(mirror.nodes(block)).enumerate() {
+            for (lane, (at_least_m, index)) in at_least.iter().zip(nodes).enumerate() {
                 if Some(lane) != first && !best.rules_out(*at_least_m) {
-                    look(&mut best, index);
+                    look(&mut best, *index);
                 }
             }
             continue;
