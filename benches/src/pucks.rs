@@ -7,8 +7,8 @@ use darrt_core::observe::Silent;
 use darrt_core::partial::PartialState;
 use darrt_core::problem::Problem;
 use darrt_core::sample::{Frontier, Full, GoalBiased, Placed, RandomSubset, RobotOrObjects, Sampler};
-use darrt_core::search::Strategy;
-use darrt_core::solve::{SolveOptions, solve};
+use darrt_core::search::{Algorithm, Strategy};
+use darrt_core::solve::{Member, SolveOptions, Until, solve_with};
 use darrt_core::space::{ComponentSpace as _, Place};
 use darrt_core::state::State;
 use darrt_core::testing::puck::problems::{self, Ready};
@@ -108,8 +108,13 @@ pub struct Needed {
     pub iterations: u64,
 }
 
-/// Solves `problem` once per seed, restarting every 200 iterations.
+/// Solves `problem` once per seed by Algorithm 1, restarting every 200 iterations.
 pub fn run(problem: &Problem<PuckWorld>, strategy: &Strategy<PuckWorld>) -> Needed {
+    run_by(Algorithm::Darrt, problem, strategy)
+}
+
+/// [`run`] by any search.
+pub fn run_by(algorithm: Algorithm, problem: &Problem<PuckWorld>, strategy: &Strategy<PuckWorld>) -> Needed {
     let mut needed = Needed { solved: 0, iterations: 0 };
     for seed in 0..SEEDS {
         let options = SolveOptions {
@@ -118,7 +123,8 @@ pub fn run(problem: &Problem<PuckWorld>, strategy: &Strategy<PuckWorld>) -> Need
             restart_iterations: Some(200),
             ..SolveOptions::default()
         };
-        let outcome = solve(problem, strategy, &options, &mut Silent);
+        let members = [Member { algorithm, strategy }];
+        let outcome = solve_with(problem, &members, Until::Solved, &options, &mut Silent);
         needed.solved += u64::from(outcome.solution.is_some());
         needed.iterations += outcome.iterations;
     }

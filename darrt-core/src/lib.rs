@@ -59,6 +59,10 @@ pub mod prelude {
     pub use crate::validity::{Blame, BlockKind, FreePrefix, Validity};
 }
 
+#[cfg(all(doctest, feature = "testing"))]
+#[doc = include_str!("../README.md")]
+struct VariantExamples;
+
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 struct ReadmeExamples;

@@ -1,21 +1,27 @@
 //! V and its edges: an arena of states, each with its parent and the instance that led to it.
 
+use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use crate::domain::Domain;
 use crate::motion::Instance;
-use crate::nearest::bounds::{Coordinates, coordinates, robot_width};
-use crate::nearest::mirror::{Mirror, push_frugally};
+use crate::nearest::bounds::Mirrors;
+use crate::nearest::mirror::push_frugally;
 use crate::state::State;
 
 /// Index of a node in its tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct NodeId(u32);
+pub struct NodeId(NonZeroU32);
 
 impl NodeId {
+    /// The node at this position in the order of insertion; `None` if no tree has so many.
+    pub(crate) fn at(index: usize) -> Option<Self> {
+        Some(Self(NonZeroU32::new(u32::try_from(index).ok()?.checked_add(1)?)?))
+    }
+
     /// Position in the order of insertion.
     pub fn index(self) -> usize {
-        self.0 as usize
+        self.0.get() as usize - 1
     }
 }
 
@@ -81,33 +87,28 @@ pub struct Tree<D: Domain> {
     /// By placement: metres added to every distance from there.
     penalties_m: Vec<f64>,
     /// What bounds on distances are reckoned from; `None` since a penalty was negative or no number.
-    mirror: Option<Mirror>,
+    mirrors: Option<Mirrors>,
 }
 
 impl<D: Domain> Tree<D> {
     /// More nodes than this are refused by [`Tree::add`].
-    pub const MAX_NODES: usize = u32::MAX as usize;
+    pub const MAX_NODES: usize = u32::MAX as usize - 1;
 
     /// The tree that holds only the start.
     pub fn rooted_at(m: &D, start: State<D>) -> Self {
-        let width = 3 * (1 + m.objects().len()) + robot_width(m, &start.robot);
-        let mut tree = Self {
-            nodes: Vec::new(),
-            placements: Vec::new(),
-            penalties_m: Vec::new(),
-            mirror: Some(Mirror::new(width)),
-        };
+        let mirrors = Some(Mirrors::new(m, &start.robot));
+        let mut tree = Self { nodes: Vec::new(), placements: Vec::new(), penalties_m: Vec::new(), mirrors };
         tree.open_placement();
         tree.push(m, start, None, 0);
         tree
     }
 
     /// The root.
-    pub const ROOT: NodeId = NodeId(0);
+    pub const ROOT: NodeId = NodeId(NonZeroU32::MIN);
 
     /// Adds a node. `None` if the tree is full.
     pub fn add(&mut self, m: &D, state: State<D>, edge: Edge<D>) -> Option<NodeId> {
-        let id = NodeId(u32::try_from(self.nodes.len()).ok()?);
+        let id = NodeId::at(self.nodes.len())?;
         let parent = self.node(edge.parent)?;
         let placement = if parent.state.objects == state.objects { parent.placement } else { self.open_placement() };
         self.push(m, state, Some(edge), placement);
@@ -123,12 +124,10 @@ impl<D: Domain> Tree<D> {
 
     fn push(&mut self, m: &D, state: State<D>, edge: Option<Edge<D>>, placement: u32) {
         let working_point = m.working_point(&state.robot);
-        if let Some(mirror) = &mut self.mirror {
-            let mut all = Coordinates::new();
-            coordinates(m, &state, working_point, &mut all);
-            mirror.push(&all, placement, &self.penalties_m);
+        if let Some(mirrors) = &mut self.mirrors {
+            mirrors.push(m, &state, working_point, placement, &self.penalties_m);
         }
-        let id = u32::try_from(self.nodes.len()).map(NodeId).ok();
+        let id = NodeId::at(self.nodes.len());
         let before = self.placements.get_mut(placement as usize).and_then(|p| {
             p.count += 1;
             std::mem::replace(&mut p.last, id)
@@ -147,7 +146,7 @@ impl<D: Domain> Tree<D> {
             placement.last = node.before;
             placement.count -= 1;
         }
-        if let Some(mirror) = &mut self.mirror {
+        for mirror in self.mirrors.iter_mut().flat_map(Mirrors::all) {
             mirror.pop(&self.penalties_m);
         }
     }
@@ -199,27 +198,28 @@ impl<D: Domain> Tree<D> {
         let (Some(penalty_m), Some(p)) = (self.penalties_m.get_mut(at), self.placements.get_mut(at)) else { return };
         *penalty_m += metres;
         if metres.is_nan() || metres < 0.0 {
-            self.mirror = None;
+            self.mirrors = None;
         }
         p.untold += 1;
         if metres > 0.0 && p.untold.saturating_mul(TOLD_SHARE) >= p.count {
             p.untold = 0;
             let last = p.last;
-            self.tell_mirror(last);
+            self.tell_mirrors(last);
         }
     }
 
-    /// Tells the mirror the penalty of `last` and of all nodes before it in the same placement.
-    fn tell_mirror(&mut self, last: Option<NodeId>) {
-        let Some(mirror) = &mut self.mirror else { return };
-        let (mut next, mut told) = (last, None);
-        while let Some(id) = next {
-            let block = mirror.block_of(id.0);
-            if block != told {
-                mirror.refresh_penalty(id.0, &self.penalties_m);
-                told = block;
+    /// Tells the mirrors the penalty of `last` and of all nodes before it in the same placement.
+    fn tell_mirrors(&mut self, last: Option<NodeId>) {
+        for mirror in self.mirrors.iter_mut().flat_map(Mirrors::all) {
+            let (mut next, mut told) = (last, None);
+            while let Some(id) = next {
+                let block = mirror.block_of(id.index());
+                if block != told {
+                    mirror.refresh_penalty(id.index(), &self.penalties_m);
+                    told = block;
+                }
+                next = self.nodes.get(id.index()).and_then(|node| node.before);
             }
-            next = self.nodes.get(id.index()).and_then(|node| node.before);
         }
     }
 
@@ -232,16 +232,12 @@ impl<D: Domain> Tree<D> {
         self.penalties_m.get(placement as usize).copied().unwrap_or(0.0)
     }
 
-    pub(crate) fn mirror(&self) -> Option<&Mirror> {
-        self.mirror.as_ref()
+    pub(crate) fn mirrors(&self) -> Option<&Mirrors> {
+        self.mirrors.as_ref()
     }
 
     pub(crate) fn at(&self, index: u32) -> Option<&Node<D>> {
         self.nodes.get(index as usize)
-    }
-
-    pub(crate) fn id_at(&self, index: u32) -> Option<NodeId> {
-        ((index as usize) < self.nodes.len()).then_some(NodeId(index))
     }
 
     /// A node; `None` if the id belongs to another tree.
@@ -251,8 +247,7 @@ impl<D: Domain> Tree<D> {
 
     /// The node that was added last.
     pub(crate) fn last(&self) -> NodeId {
-        // The arena never grows past u32::MAX nodes (see `add`).
-        NodeId(u32::try_from(self.nodes.len().saturating_sub(1)).unwrap_or(u32::MAX))
+        NodeId::at(self.nodes.len().saturating_sub(1)).unwrap_or(Self::ROOT)
     }
 
     /// How many nodes.
@@ -267,7 +262,6 @@ impl<D: Domain> Tree<D> {
 
     /// All nodes in the order of insertion.
     pub fn iter(&self) -> impl Iterator<Item = (NodeId, &Node<D>)> {
-        // The arena never grows past u32::MAX nodes (see `add`), so no index is lost.
-        self.nodes.iter().enumerate().map(|(i, n)| (NodeId(u32::try_from(i).unwrap_or(u32::MAX)), n))
+        self.nodes.iter().enumerate().filter_map(|(i, n)| Some((NodeId::at(i)?, n)))
     }
 }

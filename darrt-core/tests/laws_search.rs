@@ -123,10 +123,11 @@ mod checks {
         let standing = Placed::new(Full, Place::OnSupport, 0.5).unwrap();
         let edge = Placed::new(RandomSubset, Place::SupportEdge, 1.0).unwrap();
         let mut frontier = Frontier::new(RandomSubset, 0.5, 0.2).unwrap();
+        let from = anywhere(m, mode);
         for i in 0..20 {
             let rng = &mut darrt_core::random::stream(i, 0, 0, darrt_core::random::Purpose::Sample);
             let target = Full.sample(m, &goal, rng);
-            let at = target.overlay(m, &anywhere(m, mode.clone()));
+            let at = target.overlay(m, &from);
             frontier.learn_block(m, &at, &target);
         }
         let all = [&Full as &dyn Sampler<D>, &RandomSubset, &biased, &subsets, &boxed, &standing, &edge, &frontier];

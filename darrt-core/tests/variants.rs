@@ -6,10 +6,10 @@ use darrt_core::budget::{Budget, Stop};
 use darrt_core::distance::{ApproachVisit, Distance, Weighted};
 use darrt_core::domain::Domain;
 use darrt_core::extend::{ExtendOptions, Extender, extend_towards};
-use darrt_core::laws::planner::check_accounts;
+use darrt_core::laws::planner::{check_accounts, check_cancel};
 use darrt_core::laws::{MotionClaims, check_distance, check_motion, check_planner};
 use darrt_core::motion::{Motion, Reversed};
-use darrt_core::observe::Silent;
+use darrt_core::observe::{Observer, Silent};
 use darrt_core::partial::PartialState;
 use darrt_core::problem::Problem;
 use darrt_core::random::{Purpose, stream};
@@ -96,6 +96,20 @@ fn every_search_solves_the_puck_problems_alike_on_any_number_of_threads() {
             problem.verifier().verify(m, problem.start(), problem.goal(), plan).unwrap();
             let two = SolveOptions { threads: 2, ..options(3, 6_000) };
             assert_eq!(text(&run(&problem, algorithm, Until::Solved, &two)), text(&outcome), "{algorithm} on {name}");
+        }
+    }
+}
+
+#[test]
+fn every_search_ends_when_it_is_cancelled() {
+    let (problem, strategy) = (problems::four_pucks().unwrap(), paper_strategy().unwrap());
+    for algorithm in Algorithm::ALL {
+        for until in [Until::Solved, Until::BudgetEnds(Cost::Steps)] {
+            let members = [Member { algorithm, strategy: &strategy }];
+            let solver = |options: &SolveOptions, observer: &mut dyn Observer| {
+                solve_with(&problem, &members, until, options, observer)
+            };
+            [1, 2].into_iter().try_for_each(|threads| check_cancel(&solver, &options(1, 200), threads)).unwrap();
         }
     }
 }

@@ -2,13 +2,16 @@
 
 use darrt_core::error::Error;
 use darrt_core::space::se3::angle_between;
-use darrt_core::space::{ComponentSpace, Se3};
+use darrt_core::space::{ComponentSpace, Place, Se3};
 use darrt_geom::support::SupportSurface;
 use nalgebra::{Isometry3, Point2, Translation3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 
 /// How two poses closer than this count as one: a millimetre (the authors' near test).
 pub const OBJECT_TOLERANCE_M: f64 = 1e-3;
+
+/// Samples at an edge lie within this share of the way from there to where they would lie anywhere.
+const EDGE_SHARE: f64 = 0.2;
 
 /// Poses `world_from_object`. The object's frame is the centre of its shape, z up when it stands.
 ///
@@ -78,7 +81,7 @@ impl ObjectSpace {
         upright(Vector3::new(at.x, at.y, surface.height() + self.half_height_m), yaw)
     }
 
-    fn random_standing(&self, rng: &mut dyn Rng) -> Option<Isometry3<f64>> {
+    fn random_standing(&self, rng: &mut dyn Rng, place: Place) -> Option<Isometry3<f64>> {
         // Surfaces in proportion to their area, so that all places are equally likely.
         let total: f64 = self.surfaces.iter().map(SupportSurface::area).sum();
         if total <= 0.0 {
@@ -89,7 +92,11 @@ impl ObjectSpace {
             left -= s.area();
             left < 0.0
         })?;
-        let at = surface.sample(rng, 0.0)?;
+        let mut at = surface.sample(rng, 0.0)?;
+        if place == Place::SupportEdge {
+            let edge = surface.nearest_edge_point(&at).point;
+            at = edge + (at - edge) * rng.random_range(0.0..EDGE_SHARE);
+        }
         let pose = self.standing(surface, &at, rng.random_range(-std::f64::consts::PI..std::f64::consts::PI));
         self.contains(&pose).then_some(pose)
     }
@@ -154,12 +161,16 @@ impl ComponentSpace for ObjectSpace {
 
     fn sample(&self, rng: &mut dyn Rng) -> Isometry3<f64> {
         if rng.random_bool(self.surface_share)
-            && let Some(pose) = self.random_standing(rng)
+            && let Some(pose) = self.random_standing(rng, Place::OnSupport)
         {
             return pose;
         }
         let position = self.poses.position().sample(rng);
         upright(Vector3::from(position), rng.random_range(-std::f64::consts::PI..std::f64::consts::PI))
+    }
+
+    fn sample_at(&self, place: Place, rng: &mut dyn Rng) -> Option<Isometry3<f64>> {
+        self.random_standing(rng, place)
     }
 
     fn tolerance(&self) -> f64 {

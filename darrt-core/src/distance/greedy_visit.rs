@@ -46,6 +46,7 @@ pub(super) fn nearest_departure<D: Domain>(
 }
 
 /// Every tour has the ways of all open objects, and begins with the way to one of them.
+#[inline]
 pub(super) fn tour_at_least(ways: &Ways, out: &mut Lanes) {
     // The way to the nearest object, and the whole tour if none is open.
     let (mut hop, mut alone) = ([f32::INFINITY; LANES], [0.0; LANES]);
@@ -57,8 +58,8 @@ pub(super) fn tour_at_least(ways: &Ways, out: &mut Lanes) {
     for object in &ways.objects {
         for lane in 0..LANES {
             let (way, reach) = (object.way_m[lane], object.reach_m[lane]);
-            // A way within the tolerance does not count; close above it is not certain.
-            let counts = way >= object.open_m;
+            // A way within the tolerance does not count.
+            let counts = way > object.open_m;
             out[lane] += if counts { way } else { 0.0 };
             is_open[lane] |= counts;
             hop[lane] = if reach < hop[lane] { reach } else { hop[lane] };

@@ -56,6 +56,6 @@ impl<D: Domain> Motion<D> for Reversed<D> {
 
 impl<D: Domain> fmt::Debug for Reversed<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Reversed").field("forward", &self.forward).field("until", &self.until).finish()
+        f.debug_struct("Reversed").field("forward", &self.forward).field("until", &self.until).finish_non_exhaustive()
     }
 }

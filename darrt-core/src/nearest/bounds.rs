@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::mirror::narrow;
+use super::mirror::{LARGEST_M, Mirror, narrow};
 use crate::domain::Domain;
 use crate::partial::PartialState;
 use crate::space::ComponentSpace;
@@ -15,21 +15,56 @@ pub type Lanes = [f32; LANES];
 
 /// Coordinates of one point.
 const POINT: usize = 3;
-/// Share of the largest coordinate by which a sum of bounds in single precision may be too large: some twenty roundings of
-/// half a unit in the last place of 2^-23.
-const ROUNDING: f64 = 2e-6;
+/// Single precision loses up to half of 2^-23 of the largest coordinate, of a node and of a target, along each of at most 64
+/// coordinates: so much of it, in all, is taken off every distance.
+const LOST: f64 = 2e-6;
+/// And so much of the distance itself for the squares, their sum and the root.
+const KEPT: f32 = 1.0 - 4e-6;
 
-/// The coordinates of one node: working point, point of every object, shadow of the robot.
-pub(crate) type Coordinates = SmallVec<[f64; 32]>;
+/// The mirrors of a tree. Targets for objects and targets for the robot alone constrain different coordinates, and a mirror
+/// that is sorted by both serves neither.
+#[derive(Debug)]
+pub(crate) struct Mirrors {
+    /// Working point and points of the objects.
+    places: Mirror,
+    /// Shadow of the robot.
+    robot: Mirror,
+}
 
-/// Writes the coordinates of `state`; not a number where an object is missing.
-pub(crate) fn coordinates<D: Domain>(m: &D, state: &State<D>, working_point: [f64; 3], out: &mut Coordinates) {
-    out.clear();
-    out.extend(working_point);
-    for id in (0..m.objects().len()).map(ObjectId::new) {
-        out.extend(state.object(id).map_or([f64::NAN; POINT], |at| m.object_point(id, at)));
+type Coordinates = SmallVec<[f64; 32]>;
+
+impl Mirrors {
+    /// Empty mirrors for the nodes of a tree in `m`; `robot` is any configuration.
+    pub(crate) fn new<D: Domain>(m: &D, robot: &RobotConfig<D>) -> Self {
+        let mut count = 0;
+        m.robot().shadow(robot, &mut |_, _| count += 1);
+        Self { places: Mirror::new(POINT * (1 + m.objects().len())), robot: Mirror::new(count) }
     }
-    m.robot().shadow(&state.robot, &mut |_, x| out.push(x));
+
+    /// Both.
+    pub(crate) fn all(&mut self) -> [&mut Mirror; 2] {
+        [&mut self.places, &mut self.robot]
+    }
+
+    /// Adds the next node.
+    pub(crate) fn push<D: Domain>(
+        &mut self,
+        m: &D,
+        state: &State<D>,
+        working_point: [f64; 3],
+        placement: u32,
+        penalties_m: &[f64],
+    ) {
+        let mut all: Coordinates = working_point.into_iter().collect();
+        for id in (0..m.objects().len()).map(ObjectId::new) {
+            // An object that is missing is no number.
+            all.extend(state.object(id).map_or([f64::NAN; POINT], |at| m.object_point(id, at)));
+        }
+        self.places.push(&all, placement, penalties_m);
+        all.clear();
+        m.robot().shadow(&state.robot, &mut |_, x| all.push(x));
+        self.robot.push(&all, placement, penalties_m);
+    }
 }
 
 /// What a distance is at least made of.
@@ -37,7 +72,7 @@ pub(crate) fn coordinates<D: Domain>(m: &D, state: &State<D>, working_point: [f6
 pub struct Ways {
     /// The objects that the target names.
     pub objects: SmallVec<[ObjectWay; 2]>,
-    /// Metres of the robot alone to its own target; `None` if the target does not name it.
+    /// Metres of the robot alone to its own target; zero if the target names objects too, `None` if it does not name the robot.
     pub robot_m: Option<Lanes>,
 }
 
@@ -46,7 +81,7 @@ pub struct Ways {
 pub struct ObjectWay {
     /// Which.
     pub id: ObjectId,
-    /// If its way is at least this many metres, it is certainly not where it should be.
+    /// If its way is more than this many metres, it is certainly not where it should be.
     pub open_m: f32,
     /// Metres to its target, at least.
     pub way_m: Lanes,
@@ -60,26 +95,32 @@ pub(crate) struct Aim {
     objects: SmallVec<[(usize, [f32; POINT]); 2]>,
     /// Row and value.
     robot: SmallVec<[(usize, f32); 16]>,
-    /// By how much a bound may be too large, metres.
-    pub(crate) slack_m: f64,
+    /// Metres that rounding may have added to the distance between a node and the target.
+    lost_m: f32,
 }
 
 impl Aim {
-    /// `None` if a coordinate of the target is too large to reckon with, or no number. `scale_m` is the largest coordinate
-    /// of a node.
-    pub(crate) fn new<D: Domain>(m: &D, to: &PartialState<D>, scale_m: f64) -> Option<(Self, Ways)> {
-        let mut scale_m = scale_m;
+    /// The mirror that serves this target, and the target in its coordinates. `None` if one of them is too large to reckon
+    /// with, or no number.
+    pub(crate) fn new<'a, D: Domain>(
+        m: &D,
+        to: &PartialState<D>,
+        mirrors: &'a Mirrors,
+    ) -> Option<(&'a Mirror, Self, Ways)> {
+        let names_objects = to.objects().next().is_some();
+        let mirror = if names_objects { &mirrors.places } else { &mirrors.robot };
+        let mut scale_m = mirror.scale_m();
         let mut is_plain = true;
         let mut take = |x: f64| {
-            is_plain &= x.abs() <= super::mirror::LARGEST_M;
+            is_plain &= x.abs() <= LARGEST_M;
             scale_m = scale_m.max(x.abs());
             narrow(x)
         };
         let objects: SmallVec<[_; 2]> =
             to.objects().map(|(id, at)| (id.index(), m.object_point(id, at).map(&mut take))).collect();
         let mut robot = SmallVec::new();
-        if let Some(target) = to.robot() {
-            let mut row = POINT * (1 + m.objects().len());
+        if let Some(target) = to.robot().filter(|_| !names_objects) {
+            let mut row = 0;
             m.robot().shadow(&target.config, &mut |group, x| {
                 if target.groups.contains(group) {
                     robot.push((row, take(x)));
@@ -87,73 +128,113 @@ impl Aim {
                 row += 1;
             });
         }
-        let slack_m = ROUNDING * scale_m * (objects.len() + 2) as f64;
         let tolerance_m = |i: usize| m.objects().get(i).map_or(0.0, ComponentSpace::tolerance);
         let way = |(i, _): &(usize, _)| ObjectWay {
             id: ObjectId::new(*i),
-            open_m: narrow((tolerance_m(*i) + slack_m) * (1.0 + 1e-6)),
+            open_m: narrow(tolerance_m(*i) * (1.0 + 1e-6)),
             way_m: [0.0; LANES],
             reach_m: [0.0; LANES],
         };
         let ways = Ways { objects: objects.iter().map(way).collect(), robot_m: to.robot().map(|_| [0.0; LANES]) };
-        is_plain.then_some((Self { objects, robot, slack_m }, ways))
+        is_plain.then_some((mirror, Self { objects, robot, lost_m: narrow(LOST * scale_m) }, ways))
     }
 
-    /// Bounds for what lies between the coordinates `lower` and `upper`.
-    pub(crate) fn look<D: Domain>(&self, m: &D, lower: &[Lanes], upper: &[Lanes], ways: &mut Ways) {
+    /// Bounds for nodes at the coordinates `lower`, or for boxes from `lower` to `upper`.
+    pub(crate) fn look<D: Domain>(&self, m: &D, lower: &[Lanes], upper: Option<&[Lanes]>, ways: &mut Ways) {
         for ((index, at), way) in self.objects.iter().zip(&mut ways.objects) {
             let (mut to_target, mut to_tool) = ([0.0; LANES], [0.0; LANES]);
             for (d, x) in at.iter().enumerate() {
                 let row = POINT * (1 + index) + d;
-                let rows = (lower.get(row), upper.get(row), lower.get(d), upper.get(d));
-                let (Some(low), Some(high), Some(tool_low), Some(tool_high)) = rows else { return };
-                add_square_to(low, high, *x, &mut to_target);
-                add_square(low, high, tool_low, tool_high, &mut to_tool);
+                add_square(Rows::of(lower, upper, row), Rows::of(lower, upper, d), &mut to_tool);
+                add_square_to(Rows::of(lower, upper, row), *x, &mut to_target);
             }
-            for lane in 0..LANES {
-                way.way_m[lane] = to_target[lane].sqrt();
-            }
-            for lane in 0..LANES {
-                way.reach_m[lane] = narrow(m.reach_at_least(way.id, f64::from(to_tool[lane].sqrt())));
+            self.root(&to_target, &mut way.way_m);
+            self.root(&to_tool, &mut way.reach_m);
+            for reach_m in &mut way.reach_m {
+                *reach_m = narrow(m.reach_at_least(way.id, f64::from(*reach_m)));
             }
         }
         if let Some(robot_m) = &mut ways.robot_m {
             let mut square = [0.0; LANES];
             for (row, x) in &self.robot {
-                let (Some(low), Some(high)) = (lower.get(*row), upper.get(*row)) else { return };
-                add_square_to(low, high, *x, &mut square);
+                add_square_to(Rows::of(lower, upper, *row), *x, &mut square);
             }
-            for lane in 0..LANES {
-                robot_m[lane] = square[lane].sqrt();
+            self.root(&square, robot_m);
+        }
+    }
+
+    /// The roots, rounded down.
+    #[inline]
+    fn root(&self, squares: &Lanes, out: &mut Lanes) {
+        for (out, square) in out.iter_mut().zip(squares) {
+            let metres = square.sqrt() * KEPT - self.lost_m;
+            *out = if metres > 0.0 { metres } else { 0.0 };
+        }
+    }
+}
+
+/// One coordinate of [`LANES`] nodes, or its lower and upper bounds in as many boxes.
+#[derive(Clone, Copy)]
+enum Rows<'a> {
+    /// No such coordinate: it may be anything.
+    Unknown,
+    Nodes(&'a Lanes),
+    Boxes(&'a Lanes, &'a Lanes),
+}
+
+impl<'a> Rows<'a> {
+    #[inline]
+    fn of(lower: &'a [Lanes], upper: Option<&'a [Lanes]>, row: usize) -> Self {
+        match (lower.get(row), upper) {
+            (Some(nodes), None) => Self::Nodes(nodes),
+            (Some(low), Some(upper)) => upper.get(row).map_or(Self::Unknown, |high| Self::Boxes(low, high)),
+            (None, _) => Self::Unknown,
+        }
+    }
+}
+
+// The loops below are written so that the compiler makes vector instructions of them: no early ends, and comparisons instead
+// of `max`, which must look for numbers that are none.
+
+/// Adds the squares of the distances from `x`.
+#[inline]
+fn add_square_to(rows: Rows<'_>, x: f32, sum: &mut Lanes) {
+    match rows {
+        Rows::Unknown => {}
+        Rows::Nodes(at) => {
+            for (sum, at) in sum.iter_mut().zip(at) {
+                *sum += (at - x) * (at - x);
+            }
+        }
+        Rows::Boxes(low, high) => {
+            for ((sum, low), high) in sum.iter_mut().zip(low).zip(high) {
+                let (below, above) = (low - x, x - high);
+                let gap = if below > above { below } else { above };
+                let gap = if gap > 0.0 { gap } else { 0.0 };
+                *sum += gap * gap;
             }
         }
     }
 }
 
-/// Adds the squares of the distances of `x` from the intervals `[low, high]`.
-fn add_square_to(low: &Lanes, high: &Lanes, x: f32, sum: &mut Lanes) {
-    for lane in 0..LANES {
-        let (below, above) = (low[lane] - x, x - high[lane]);
-        let gap = if below > above { below } else { above };
-        let gap = if gap > 0.0 { gap } else { 0.0 };
-        sum[lane] += gap * gap;
+/// Adds the squares of the gaps between two coordinates.
+#[inline]
+fn add_square(a: Rows<'_>, b: Rows<'_>, sum: &mut Lanes) {
+    match (a, b) {
+        (Rows::Nodes(a), Rows::Nodes(b)) => {
+            for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
+                *sum += (a - b) * (a - b);
+            }
+        }
+        (Rows::Boxes(low, high), Rows::Boxes(lower, upper)) => {
+            let lanes = low.iter().zip(high).zip(lower.iter().zip(upper));
+            for (sum, ((low, high), (lower, upper))) in sum.iter_mut().zip(lanes) {
+                let (below, above) = (low - upper, lower - high);
+                let gap = if below > above { below } else { above };
+                let gap = if gap > 0.0 { gap } else { 0.0 };
+                *sum += gap * gap;
+            }
+        }
+        _ => {}
     }
-}
-
-/// Adds the squares of the gaps between the intervals `[a, b]` and `[c, d]`. Written so that the compiler makes vector
-/// instructions of it.
-fn add_square(a: &Lanes, b: &Lanes, c: &Lanes, d: &Lanes, sum: &mut Lanes) {
-    for lane in 0..LANES {
-        let (below, above) = (a[lane] - d[lane], c[lane] - b[lane]);
-        let gap = if below > above { below } else { above };
-        let gap = if gap > 0.0 { gap } else { 0.0 };
-        sum[lane] += gap * gap;
-    }
-}
-
-/// The names and number of a robot's coordinates.
-pub(crate) fn robot_width<D: Domain>(m: &D, robot: &RobotConfig<D>) -> usize {
-    let mut count = 0;
-    m.robot().shadow(robot, &mut |_, _| count += 1);
-    count
 }

@@ -92,25 +92,29 @@ impl Mirror {
         self.scale_m
     }
 
-    /// Lower and upper coordinates of one block; the same for nodes.
-    pub(crate) fn block(&self, level: usize, block: usize) -> Option<(&[Lanes], &[Lanes])> {
+    /// Lower and upper coordinates of the boxes of one block; of nodes, the coordinates alone.
+    #[inline]
+    pub(crate) fn block(&self, level: usize, block: usize) -> Option<(&[Lanes], Option<&[Lanes]>)> {
         let range = block * self.width..(block + 1) * self.width;
         let level = self.levels.get(level)?;
         let lower = level.lower.get(range.clone())?;
-        Some((lower, if level.upper.is_empty() { lower } else { level.upper.get(range)? }))
+        Some((lower, if level.upper.is_empty() { None } else { Some(level.upper.get(range)?) }))
     }
 
     /// The penalties of the boxes of one block; empty for nodes.
+    #[inline]
     pub(crate) fn penalties_m(&self, level: usize, block: usize) -> &[f32] {
         let Some(level) = self.levels.get(level) else { return &[] };
         let end = level.penalties_m.len().min((block + 1) * LANES);
         level.penalties_m.get(block * LANES..end).unwrap_or_default()
     }
 
-    /// The nodes of one block, each with its placement.
-    pub(crate) fn nodes(&self, block: usize) -> impl Iterator<Item = (u32, u32)> {
-        let nodes = self.nodes.iter().skip(block * LANES).take(LANES).copied();
-        nodes.zip(self.placements.iter().skip(block * LANES).copied())
+    /// The nodes of one block, and their placements.
+    #[inline]
+    pub(crate) fn nodes(&self, block: usize) -> (&[u32], &[u32]) {
+        let end = self.nodes.len().min((block + 1) * LANES);
+        let of_block = |all| <[u32]>::get(all, block * LANES..end).unwrap_or_default();
+        (of_block(&self.nodes), of_block(&self.placements))
     }
 
     /// Adds the next node. `penalties_m` are those of all placements.
@@ -176,8 +180,8 @@ impl Mirror {
     }
 
     /// Tells that the penalty of the placement of `node` has grown.
-    pub(crate) fn refresh_penalty(&mut self, node: u32, penalties_m: &[f64]) {
-        let Some(slot) = self.slots.get(node as usize) else { return };
+    pub(crate) fn refresh_penalty(&mut self, node: usize, penalties_m: &[f64]) {
+        let Some(slot) = self.slots.get(node) else { return };
         let mut item = *slot as usize / LANES;
         for height in 1..self.levels.len() {
             self.set_penalty(height, item, penalties_m);
@@ -186,8 +190,8 @@ impl Mirror {
     }
 
     /// The block of a node, to see whether two nodes share one.
-    pub(crate) fn block_of(&self, node: u32) -> Option<usize> {
-        self.slots.get(node as usize).map(|slot| *slot as usize / LANES)
+    pub(crate) fn block_of(&self, node: usize) -> Option<usize> {
+        self.slots.get(node).map(|slot| *slot as usize / LANES)
     }
 
     fn set_penalty(&mut self, height: usize, item: usize, penalties_m: &[f64]) {
@@ -366,6 +370,7 @@ impl Mirror {
 
 /// Single precision; what is lost is allowed for where bounds are compared.
 #[allow(clippy::cast_possible_truncation, reason = "rounding is meant")]
+#[inline]
 pub(crate) fn narrow(x: f64) -> f32 {
     x as f32
 }

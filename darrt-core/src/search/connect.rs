@@ -275,3 +275,57 @@ impl<D: Domain> Planner<D> for Connect<'_, D> {
         self.forward.nearest_to_goal()
     }
 }
+
+#[cfg(all(test, feature = "testing"))]
+#[allow(clippy::unwrap_used, reason = "a test says no more than that it failed")]
+mod tests {
+    use super::*;
+    use crate::budget::Interrupt;
+    use crate::testing::puck::{paper_strategy, problems};
+
+    fn start(seed: u64) -> Start<'static> {
+        Start { seed, attempt: 0, node_limit: usize::MAX, interrupt: Interrupt::NEVER }
+    }
+
+    #[test]
+    fn every_goal_node_leads_to_the_next_bit_for_bit_and_no_push_runs_backwards() {
+        let (problem, strategy) = (problems::two_pucks().unwrap(), paper_strategy().unwrap());
+        let m = problem.domain();
+        let mut connect = Connect::new(&problem, &strategy, start(1));
+        (0..600).for_each(|_| drop(connect.step()));
+        let (mut pushes, mut turned) = (0, 0);
+        for node in &connect.goal_nodes {
+            let Some((next, step)) = &node.next else {
+                assert!(problem.goal().is_satisfied(m, &node.state));
+                continue;
+            };
+            assert_eq!(step.instance.at(m, 0.0, problem.start()), node.state);
+            assert_eq!(step.instance.at(m, step.until, problem.start()), connect.goal_nodes[*next].state);
+            let free = problem.validity().free_prefix(m, &step.instance, &node.state);
+            assert!(free.fraction >= step.until, "{}: {:?}", step.instance.label, free.blame);
+            let is_turned = format!("{:?}", step.instance.motion).starts_with("Reversed");
+            turned += u32::from(is_turned);
+            pushes += u32::from(step.instance.label == "Push");
+            assert!(!is_turned || step.instance.label != "Push");
+        }
+        assert!(pushes > 0 && turned > 0, "{pushes} pushes, {turned} turned around");
+    }
+
+    #[test]
+    fn the_trees_meet() {
+        let strategy = paper_strategy().unwrap();
+        let mut met = 0;
+        for (seed, (_, make)) in (0..5).flat_map(|seed| problems::ALL.map(|problem| (seed, problem))) {
+            let problem = make().unwrap();
+            let mut connect = Connect::new(&problem, &strategy, start(seed));
+            for _ in 0..300 {
+                let phase = connect.phase;
+                if connect.step().solution.is_some() {
+                    met += u32::from(matches!(phase, Phase::ReachFor(_) | Phase::ReachForGoal(_)));
+                    break;
+                }
+            }
+        }
+        assert!(met >= 5, "{met}");
+    }
+}
