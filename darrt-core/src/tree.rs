@@ -162,7 +162,7 @@ impl<D: Domain> Tree<D> {
         let Some(first) = way.filter(is_on).last() else { return 0 };
         let Some(root) = self.node(Self::ROOT).map(|root| root.state.clone()) else { return 0 };
         let old = std::mem::replace(self, Self::rooted_at(m, root));
-        let has_mirror = old.mirror.is_some();
+        let has_mirrors = old.mirrors.is_some();
         // By old index: the new id; `None` for what is gone. Parents come before their children.
         let mut kept = vec![Some(Self::ROOT)];
         let before = old.nodes.len();
@@ -185,8 +185,8 @@ impl<D: Domain> Tree<D> {
         if let (Some(penalty_m), Some(known_m)) = (self.penalties_m.first_mut(), old.penalties_m.first()) {
             *penalty_m = *known_m;
         }
-        if !has_mirror {
-            self.mirror = None;
+        if !has_mirrors {
+            self.mirrors = None;
         }
         before - self.nodes.len()
     }
