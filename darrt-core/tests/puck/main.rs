@@ -7,6 +7,8 @@ mod around;
 #[cfg(test)]
 mod clearance;
 #[cfg(test)]
+mod deferred;
+#[cfg(test)]
 mod extension;
 #[cfg(test)]
 mod misbehaviour;
