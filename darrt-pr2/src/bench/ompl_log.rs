@@ -24,10 +24,10 @@ type Value = fn(&Record) -> String;
 
 /// What the log says of each run: OMPL's name and type, and the value; an empty value is none.
 const PROPERTIES: [(&str, &str, Value); 17] = [
-    ("status", "ENUM", |r| if r.solved { EXACT } else { TIMEOUT }.to_owned()),
-    ("solved", "BOOLEAN", |r| u8::from(r.solved).to_string()),
+    ("status", "ENUM", |r| if r.is_in_time() { EXACT } else { TIMEOUT }.to_owned()),
+    ("solved", "BOOLEAN", |r| u8::from(r.is_in_time()).to_string()),
     ("approximate solution", "BOOLEAN", |_| "0".to_owned()),
-    ("correct solution", "BOOLEAN", |r| u8::from(r.solved).to_string()),
+    ("correct solution", "BOOLEAN", |r| u8::from(r.is_in_time()).to_string()),
     ("time", "REAL", |r| r.seconds.total.to_string()),
     ("first plan time", "REAL", |r| optional(r.seconds.first_plan)),
     ("shortening time", "REAL", |r| r.seconds.shortening.to_string()),

@@ -208,15 +208,15 @@ impl Record {
         Key { problem: self.problem.clone(), variant: self.variant.clone(), seed: self.seed }
     }
 
-    /// Something that grows until the solution (seconds, iterations, nodes): observed if solved, else censored.
-    pub fn observation(&self, value: f64) -> Observation {
-        Observation { value, is_event: self.solved }
+    /// Was it solved within the time limit? A plan that was found in time but verified after it came too late: the runs
+    /// without a plan were not given that time either.
+    pub fn is_in_time(&self) -> bool {
+        self.solved && self.seconds.total <= self.conditions.time_limit_s
     }
 
-    /// Seconds until solved. A run without a plan is censored at its limit, however late it noticed it.
+    /// Seconds until solved; a run that was not solved in time is censored at the limit, or where it ended before.
     pub fn time(&self) -> Observation {
-        let seconds = self.seconds.total;
-        self.observation(if self.solved { seconds } else { seconds.min(self.conditions.time_limit_s) })
+        Observation { value: self.seconds.total.min(self.conditions.time_limit_s), is_event: self.is_in_time() }
     }
 }
 
@@ -292,6 +292,14 @@ pub(crate) mod tests {
             },
             started_unix_s: 1_700_000_000 + seed,
         }
+    }
+
+    #[test]
+    fn what_is_solved_too_late_is_censored_at_the_limit() {
+        let time = |seconds, solved| sample("bowl", "default", 0, seconds, solved).time();
+        let at = |value, is_event| Observation { value, is_event };
+        assert_eq!((time(60.0, true), time(60.1, true)), (at(60.0, true), at(60.0, false)));
+        assert_eq!((time(12.0, false), time(60.2, false)), (at(12.0, false), at(60.0, false)));
     }
 
     #[test]

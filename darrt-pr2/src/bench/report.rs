@@ -99,7 +99,7 @@ const RESTARTS: &str = "<p>From the iterations that attempts took, those given u
 const ENDS: &str =
     "<p>Every extension of the tree puts every primitive into one row of its column: where it got to.</p>";
 const READING: &str = "<p>A run that ends without a plan does not say how long the problem takes, only that it takes longer \
-    than the run had: its time is <em>censored</em>. Leaving such runs out, or taking their limit for their time, would make \
+    than the run had: its time is <em>censored</em>. So is the time of a plan that was accepted after the limit. Leaving such runs out, or taking their limit for their time, would make \
     a planner look better than it is. Shares and quantiles are therefore product-limit estimates (Kaplan and Meier) over all \
     runs. <b>&gt; 60</b> means that a quantile lies somewhere beyond 60 s. The interval of the median is where it lies with \
     a confidence of 95 %, by a seeded bootstrap over runs. Means say little about such times, which have long tails; the \
@@ -116,7 +116,7 @@ fn section(body: &mut String, title: &str, content: &str) {
 
 /// Title, what ran and where.
 fn head(all: &Collection, look: &Look) -> String {
-    let solved = all.records().filter(|run| run.solved).count();
+    let solved = all.records().filter(|run| run.is_in_time()).count();
     let times = || all.records().map(|run| run.started_unix_s);
     let (first, last) = (times().min().unwrap_or(0), times().max().unwrap_or(0));
     let problems: BTreeSet<&str> = all.records().map(|run| run.problem.as_str()).collect();

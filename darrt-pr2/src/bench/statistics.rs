@@ -20,7 +20,7 @@ pub struct Summary {
     pub variant: String,
     /// Runs.
     pub runs: usize,
-    /// Runs with an accepted plan.
+    /// Runs with an accepted plan within the time limit.
     pub solved: usize,
     /// Seconds to the accepted plan.
     pub time: Survival,
@@ -51,7 +51,7 @@ impl Summary {
             problem: problem.to_owned(),
             variant: first.variant.clone(),
             runs: runs.len(),
-            solved: runs.iter().filter(|run| run.solved).count(),
+            solved: runs.iter().filter(|run| run.is_in_time()).count(),
             time: Survival::of(&times),
             median_interval: bootstrap::interval(&times, 0.5, CONFIDENCE, seed),
             iterations: half_solved(runs, |run| run.iterations as f64),
@@ -66,7 +66,8 @@ impl Summary {
 /// The least effort with which half of all runs were solved. Runs without a plan count as never: it was the clock that
 /// ended them, so that their own effort is no bound that would be the same for all.
 fn half_solved(runs: &[&Record], effort: fn(&Record) -> f64) -> Option<f64> {
-    let mut efforts: Vec<f64> = runs.iter().map(|run| if run.solved { effort(run) } else { f64::INFINITY }).collect();
+    let mut efforts: Vec<f64> =
+        runs.iter().map(|run| if run.is_in_time() { effort(run) } else { f64::INFINITY }).collect();
     efforts.sort_by(f64::total_cmp);
     efforts.get(runs.len().div_ceil(2).checked_sub(1)?).copied().filter(|effort| effort.is_finite())
 }

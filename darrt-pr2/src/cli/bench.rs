@@ -80,7 +80,7 @@ fn measure(options: &BenchOptions, output: &mut Output) -> Result<(Collection, E
     let name = path.display().to_string();
     workers::run(&set, &left, &machine, &cancel, |record| {
         journal.add(&record)?;
-        solved += usize::from(record.solved);
+        solved += usize::from(record.is_in_time());
         progress.advance(&format!(", {solved} solved"));
         all.add(record, &name)
     })?;

@@ -93,7 +93,7 @@ fn dots(runs: &[&Record], y: f64, axis: &LogAxis, area: &Area) -> Element {
         // Spread by the golden ratio, so that equal times do not hide each other.
         let spread = (index as f64 * 0.618_033_988_749_895).fract() - 0.5;
         let at = Point2::new(axis.x(run.time().value, area), y + spread * 1.5 * HALF);
-        if run.solved {
+        if run.is_in_time() {
             group.append(ink::circle(&at, 2.0, &Ink::filled(palette::TEXT).opacity(0.45)));
         } else {
             let corner = |x: f64, y: f64| Point2::new(at.x + x, at.y + y);
