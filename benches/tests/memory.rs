@@ -1,5 +1,5 @@
 //! What the planner allocates for the PR2, counted: bytes for each node of a tree, and allocations along a motion.
-#![allow(clippy::unwrap_used, reason = "a test says no more than that it failed")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test says no more than that it failed")]
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
