@@ -1,5 +1,5 @@
 //! The planner's collision check and the exact oracle on the same states: PR2 and plate in the room of Plate3. One
-//! element is one state.
+//! element is one state; of a motion, one configuration at the verifier's resolution.
 
 #![allow(
     clippy::unwrap_used,
@@ -12,10 +12,11 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use darrt_benches::room::Room;
+use darrt_benches::room::{HeldMotion, Room, held_motions};
 use darrt_core::validity::Validity as _;
 use darrt_geom::{AllowedContacts, BodySet, oracle};
 use darrt_primitives::mode::Contacts;
+use darrt_primitives::testing::scene_oracle::SceneOracle;
 
 const COUNT: u64 = 256;
 /// What the oracle gets: it is slow.
@@ -64,5 +65,36 @@ fn collide(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, collide);
+/// Whole motions of the arm with the plate in its hand, self-collision included: by the planner, which proves them free
+/// between configurations too, and configuration by configuration.
+fn motions(c: &mut Criterion) {
+    let room = Room::new();
+    let motions = held_motions(128);
+    let mut group = c.benchmark_group("motion");
+    let configurations: f64 = motions.iter().map(|motion| motion.configurations).sum();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a sum of counts")]
+    group.throughput(Throughput::Elements(configurations as u64));
+    group.bench_function("free prefix", |b| {
+        b.iter(|| {
+            for HeldMotion { from, instance, .. } in &motions {
+                black_box(room.validity.free_prefix(&room.world, instance, black_box(from)).fraction);
+            }
+        });
+    });
+    let some: Vec<_> = motions.iter().step_by(8).map(|motion| motion.at(&room, 0.3)).collect();
+    group.throughput(Throughput::Elements(some.len() as u64));
+    group.bench_function("each configuration by itself", |b| {
+        let free = |state: &&_| room.validity.check(&room.world, state, &Contacts::default()).is_ok();
+        b.iter(|| some.iter().filter(free).count());
+    });
+    group.sample_size(10);
+    let oracle = SceneOracle::new(room.scene.bodies());
+    group.bench_function("each configuration by the oracle", |b| {
+        let free = |state: &&_| oracle.check(&room.world, state, &Contacts::default()).is_ok();
+        b.iter(|| some.iter().filter(free).count());
+    });
+    group.finish();
+}
+
+criterion_group!(benches, collide, motions);
 criterion_main!(benches);

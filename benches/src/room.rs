@@ -1,7 +1,14 @@
 //! The PR2 in the scene of Plate3.
 
+use std::sync::Arc;
+
 use darrt_core::domain::Domain as _;
+use darrt_core::motion::Instance;
+use darrt_core::observe::Silent;
+use darrt_core::partial::PartialState;
+use darrt_core::path::path;
 use darrt_core::search::{Darrt, Strategy};
+use darrt_core::solve::{SolveOptions, solve};
 use darrt_core::space::ComponentSpace as _;
 use darrt_core::state::State;
 use darrt_geom::oracle::PosedBody;
@@ -9,6 +16,7 @@ use darrt_geom::{Body, Scene};
 use darrt_pr2::planning::{Prepared, prepare, strategy};
 use darrt_pr2::problem_file::{ProblemFile, builtin};
 use darrt_pr2::world::{Built, World, WorldState, build};
+use darrt_primitives::arm_space::ARM;
 use darrt_primitives::manipulator::Manipulator as _;
 use darrt_primitives::validity::SceneValidity;
 use nalgebra::Isometry3;
@@ -86,6 +94,48 @@ pub fn prepared() -> (Prepared, Strategy<World>) {
     let file = plate3();
     let strategy = strategy(&file.sampling, file.sampling.sampler, file.sampling.distance).unwrap();
     (prepare(&file).unwrap(), strategy)
+}
+
+/// Metres that the farthest point may travel between two configurations of a motion: the verifier's resolution.
+pub const RESOLUTION_M: f64 = 0.0025;
+
+/// A motion of the arm with the plate in its hand, as the planner proposes it.
+#[derive(Debug)]
+pub struct HeldMotion {
+    /// Where it begins.
+    pub from: WorldState,
+    /// The motion.
+    pub instance: Arc<Instance<World>>,
+    /// Configurations at [`RESOLUTION_M`] up to its end or to where it is blocked.
+    pub configurations: f64,
+}
+
+impl HeldMotion {
+    /// A configuration on it, `share` of the way to its end.
+    pub fn at(&self, room: &Room, share: f64) -> WorldState {
+        self.instance.at(&room.world, share, &self.from)
+    }
+}
+
+/// `count` draws of motions to anywhere from states of a plan in which the plate is held; those that begin free.
+pub fn held_motions(count: usize) -> Vec<HeldMotion> {
+    let (prepared, strategy) = prepared();
+    let problem = &prepared.problem;
+    let m = problem.domain();
+    let options = SolveOptions { seed: 2, ..SolveOptions::default() };
+    let plan = solve(problem, &strategy, &options, &mut Silent).solution.unwrap().plan().clone();
+    let states = (0..plan.steps().len()).filter_map(|step| plan.at(m, step, 1.0));
+    let held: Vec<_> = states.filter(|state| state.mode.held().is_some()).collect();
+    let draw = |(index, from): (u64, &WorldState)| {
+        let rng = &mut stream(index);
+        let to = PartialState::anywhere(m).with_robot_groups(m.robot().sample(rng), ARM);
+        let path = path(m, problem.primitives(), from, &to, 1, rng);
+        let instance = Arc::clone(&path.instances.first().filter(|(_, i)| i.label == "Arm-Rigid-Transfer")?.1);
+        let free = problem.validity().free_prefix(m, &instance, from).fraction;
+        let configurations = (instance.motion.length() * free / RESOLUTION_M).ceil();
+        (configurations > 1.0).then(|| HeldMotion { from: from.clone(), instance, configurations })
+    };
+    (0..).zip(held.iter().cycle().take(count)).filter_map(draw).collect()
 }
 
 /// States of a tree that has grown for `iterations`, at most `count`, spread over the tree.

@@ -251,15 +251,15 @@ impl<'p, D: Domain> Darrt<'p, D> {
     /// A shorter plan if one can be had, else the plan to this node.
     fn prove(&self, node: NodeId) -> Result<Solution<D>, Unproved<D>> {
         let lost = || Refusal { step: None, at: 0.0, reason: "the tree has no such node".to_owned() };
-        self.prove_plan(Plan::to_node(&self.tree, node).ok_or_else(|| Unproved::Refused(lost()))?)
+        self.prove_plan(&Plan::to_node(&self.tree, node).ok_or_else(|| Unproved::Refused(lost()))?)
     }
 
     /// Has a plan verified, made shorter if it can be, its motions judged if that was put off.
-    fn prove_plan(&self, plan: Plan<D>) -> Result<Solution<D>, Unproved<D>> {
+    fn prove_plan(&self, plan: &Plan<D>) -> Result<Solution<D>, Unproved<D>> {
         let rng = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Shorten);
         let extender = self.extender();
         // A shorter plan that the verifier refuses is no reason to give up the longer one.
-        if let Some(short) = shorten(&extender, &plan, self.strategy.shorten, rng)
+        if let Some(short) = shorten(&extender, plan, self.strategy.shorten, rng)
             && let Ok(solution) = self.judge(short)
         {
             return Ok(solution);

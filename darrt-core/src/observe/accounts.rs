@@ -163,7 +163,9 @@ impl Accounts {
                 *cell += 1;
             }
         }
-        blame.into_iter().for_each(|blame| self.note(blame));
+        if let Some(blame) = blame {
+            self.note(blame);
+        }
     }
 
     /// Counts a plan that was given up with `removed` states, because of this.

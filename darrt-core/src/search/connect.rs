@@ -113,7 +113,7 @@ impl<'p, D: Domain> Connect<'p, D> {
             steps.push(step.clone());
             at = self.goal_nodes.get(*next)?;
         }
-        Some(self.forward.prove_plan(Plan::new(beginning.start().clone(), steps)))
+        Some(self.forward.prove_plan(&Plan::new(beginning.start().clone(), steps)))
     }
 
     /// A new goal node from a sample: by a forward extension from a state that differs from a goal node in what the sample

@@ -125,7 +125,7 @@ impl<'p, D: Domain> Hierarchical<'p, D> {
             self.begin_next(here);
             return;
         }
-        match self.whole.prove_plan(whole) {
+        match self.whole.prove_plan(&whole) {
             Ok(solution) => step.solution = Some(solution),
             Err(unproved) => {
                 match unproved {
