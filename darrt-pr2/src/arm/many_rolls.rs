@@ -3,6 +3,8 @@
 //! The formulas are those of [`closed_form`](super::closed_form); each branch (root of the quadratic, bend of the elbow,
 //! side of the wrist) is gone through for all lanes, with a mask of the lanes in which it is a solution.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
+
 use std::f64::consts::{PI, TAU};
 
 use darrt_primitives::kinematics::JointLimit;
@@ -92,7 +94,6 @@ struct Run<'a> {
 impl WithSimd for Run<'_> {
     type Output = ();
 
-    #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { limits, target, rolls, out } = self;
@@ -106,7 +107,6 @@ impl WithSimd for Run<'_> {
 // In what follows no closure is called and no array mapped: they would not be compiled for the processor at hand.
 
 /// All branches for the rolls of one register.
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn solve<S: Simd>(limits: &[JointLimit; 7], target: &Target, roll: Lanes<S>, register: usize, out: &mut RollSolutions) {
     let (w, simd) = (&target.wrist, roll.simd());
@@ -157,7 +157,6 @@ fn solve<S: Simd>(limits: &[JointLimit; 7], target: &Target, roll: Lanes<S>, reg
 }
 
 /// The wrist joints for the first four, and both sides of the wrist stored.
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn wrist<S: Simd>(
     limits: &[JointLimit; 7],
@@ -203,7 +202,6 @@ fn wrist<S: Simd>(
 }
 
 /// [`JointLimit::wrap`] of angles in `[-pi, pi]`, and where it has a value.
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn wrapped<S: Simd>(limit: &JointLimit, angle: Lanes<S>) -> (Lanes<S>, Mask<S>) {
     let simd = angle.simd();
@@ -232,7 +230,6 @@ struct Turn<S: Simd> {
     cos: Lanes<S>,
 }
 
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 impl<S: Simd> Turn<S> {
     #[inline(always)]
     fn at(angle: Lanes<S>) -> Self {
@@ -257,7 +254,6 @@ impl<S: Simd> Turn<S> {
 }
 
 /// `(Rz(q1) Ry(q2) Rx(q3) Ry(q4))^T v`.
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn seen_after<S: Simd>([t1, t2, t3, t4]: &[Turn<S>; 4], [x, y, z]: [f64; 3]) -> [Lanes<S>; 3] {
     let (x, y) = (t1.cos * x + t1.sin * y, t1.cos * y - t1.sin * x);

@@ -60,7 +60,7 @@ impl Arm {
     }
 
     /// Values of the upper arm roll, equally far apart, with a random phase.
-    fn rolls(&self, rng: &mut dyn Rng) -> ArrayVec<f64, MOST_SAMPLES> {
+    pub(super) fn rolls(&self, rng: &mut dyn Rng) -> ArrayVec<f64, MOST_SAMPLES> {
         let roll = self.limits[2];
         let (lower, width) = if roll.is_unlimited() {
             (-std::f64::consts::PI, std::f64::consts::TAU)

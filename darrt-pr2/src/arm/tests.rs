@@ -133,6 +133,87 @@ fn any_finds_nearly_every_reachable_pose() {
     assert!(found >= 480, "{found} of 500");
 }
 
+/// A solution is found when one of the same rolls, one by one, has one.
+#[test]
+fn any_finds_what_the_rolls_one_by_one_have() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(9);
+    let (mut out, mut found) = (Solutions::new(), 0);
+    for seed in 0..600 {
+        let arm = random_arm(&mut rng, LimitKind::Soft);
+        let away = Translation3::new(rng.random_range(-0.4..0.4), rng.random_range(-0.4..0.4), 0.0);
+        let pose = away * arm.base_from_tool(&random_configuration(&arm, &mut rng));
+        let same = || Xoshiro256PlusPlus::seed_from_u64(seed);
+        let exists = arm.rolls(&mut same()).iter().any(|roll| {
+            arm.inverse(&pose, *roll, &mut out);
+            !out.is_empty()
+        });
+        assert_eq!(arm.inverse_any(&pose, &mut same()).is_some(), exists);
+        found += u32::from(exists);
+    }
+    assert!((100..500).contains(&found), "{found} of 600");
+}
+
+#[test]
+fn where_shows_every_solution_until_one_is_taken() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(10);
+    let mut shown = 0;
+    for _ in 0..200 {
+        let arm = random_arm(&mut rng, LimitKind::Soft);
+        let pose = arm.base_from_tool(&random_configuration(&arm, &mut rng));
+        let mut all = Vec::new();
+        let mut refuse = |q: &ArmConfiguration| {
+            all.push(*q);
+            false
+        };
+        assert_eq!(arm.inverse_where(&pose, &mut rng, &mut refuse), None);
+        for (i, q) in all.iter().enumerate() {
+            check(&arm, &pose, &Solutions::from_iter([*q]));
+            assert!(!all[..i].contains(q));
+        }
+        let wanted = all.len() / 2;
+        let mut calls = 0;
+        let taken = arm.inverse_where(&pose, &mut rng, |_| {
+            calls += 1;
+            calls == wanted
+        });
+        assert_eq!(taken.is_some(), (1..=calls).contains(&wanted));
+        shown += all.len();
+    }
+    assert!(shown > 200 * 10, "{shown}");
+}
+
+/// [`Arm::inverse_near`] with the rolls one by one.
+fn near_one_by_one(arm: &Arm, pose: &Isometry3<f64>, near: &ArmConfiguration, most: f64) -> Option<ArmConfiguration> {
+    let mut out = Solutions::new();
+    let mut all = Vec::new();
+    for step in -8..=8 {
+        arm.inverse(pose, near[2] + most * f64::from(step) / 8.0, &mut out);
+        all.extend(out.iter().copied());
+    }
+    all.retain(|q| joint_differences(&arm.limits, near, q).iter().all(|d| d.abs() <= most + 1e-12));
+    all.into_iter().min_by(|a, b| joint_distance(&arm.limits, near, a).total_cmp(&joint_distance(&arm.limits, near, b)))
+}
+
+#[test]
+fn near_finds_the_nearest_of_all_rolls() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(11);
+    let mut found = 0;
+    for _ in 0..500 {
+        let arm = random_arm(&mut rng, LimitKind::Soft);
+        let q = random_configuration(&arm, &mut rng);
+        let away = Translation3::from(Vector3::from_fn(|_, _| rng.random_range(-0.05..0.05)));
+        let pose = away * arm.base_from_tool(&q);
+        let [fast, slow] = [arm.inverse_near(&pose, &q, 0.4), near_one_by_one(&arm, &pose, &q, 0.4)];
+        assert_eq!(fast.is_some(), slow.is_some());
+        if let (Some(fast), Some(slow)) = (fast, slow) {
+            let [fast, slow] = [fast, slow].map(|s| joint_distance(&arm.limits, &q, &s));
+            assert!((fast - slow).abs() < 1e-9, "{fast} {slow}");
+            found += 1;
+        }
+    }
+    assert!(found > 300, "{found}");
+}
+
 /// Straight lines of the tool in steps of 1 cm, tracked from wherever the elbow was.
 #[test]
 fn near_follows_straight_lines() {

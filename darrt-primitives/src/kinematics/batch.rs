@@ -5,6 +5,8 @@
 //! that are fixed are folded into what hangs on them, unless their poses are asked for, and a turn about a coordinate
 //! axis of its link costs two columns instead of a product of matrices.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
+
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 
@@ -159,14 +161,13 @@ impl BatchForward {
             LinkMotion::Sliding { axis, drive } => {
                 Joint::Slide { direction: (rotation * axis.into_inner()).into(), drive: *drive }
             }
-            LinkMotion::Turning { axis, drive } => match axis.iter().position(|x| x.abs() == 1.0) {
-                Some(along) => {
+            LinkMotion::Turning { axis, drive } => {
+                if let Some(along) = axis.iter().position(|x| x.abs() == 1.0) {
                     let sign = axis[along];
                     let Drive { variable, multiplier, offset } = *drive;
                     let turn = self.turn(Drive { variable, multiplier: sign * multiplier, offset: sign * offset });
                     Joint::TurnAbout { axis: along, turn }
-                }
-                None => {
+                } else {
                     turned = None;
                     let along = axis.into_inner();
                     let still = along * along.transpose();
@@ -177,7 +178,7 @@ impl BatchForward {
                         turn: self.turn(*drive),
                     }
                 }
-            },
+            }
         };
         self.steps.push(Step { parent, offset: parent_from_link.translation.vector.into(), turned, joint });
         self.steps.len()
@@ -248,7 +249,6 @@ struct Run<'a> {
 impl WithSimd for Run<'_> {
     type Output = ();
 
-    #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { program, joint_values, world_from_root, out } = self;
@@ -310,47 +310,40 @@ impl WithSimd for Run<'_> {
 // In what follows no closure is called and no array mapped: they would not be compiled for the processor at hand.
 
 /// The value of a driven joint.
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn value<S: Simd>(simd: S, drive: &Drive, joint_values: &[Row], register: usize) -> Lanes<S> {
     Lanes::load(simd, &joint_values[drive.variable], register) * drive.multiplier + drive.offset
 }
 
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn store2<S: Simd>([a, b]: [Lanes<S>; 2], rows: &mut [Row; 2], register: usize) {
     a.store(&mut rows[0], register);
     b.store(&mut rows[1], register);
 }
 
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn load2<S: Simd>(simd: S, [a, b]: &[Row; 2], register: usize) -> [Lanes<S>; 2] {
     [Lanes::load(simd, a, register), Lanes::load(simd, b, register)]
 }
 
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn load3<S: Simd>(simd: S, [a, b, c]: &[Row; 3], register: usize) -> Vector<S> {
     [Lanes::load(simd, a, register), Lanes::load(simd, b, register), Lanes::load(simd, c, register)]
 }
 
 /// `a * by + b * other`.
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn sum<S: Simd>(a: Vector<S>, by: Lanes<S>, b: Vector<S>, other: Lanes<S>) -> Vector<S> {
     [a[0] * by + b[0] * other, a[1] * by + b[1] * other, a[2] * by + b[2] * other]
 }
 
 /// `sum + a * by`.
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn plus<S: Simd>(sum: Vector<S>, a: Vector<S>, by: Lanes<S>) -> Vector<S> {
     [sum[0] + a[0] * by, sum[1] + a[1] * by, sum[2] + a[2] * by]
 }
 
 /// A column of a rotation by an angle about a constant axis.
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn column<S: Simd>(sine: Lanes<S>, s: &[f64; 3], cosine: Lanes<S>, c: &[f64; 3], still: &[f64; 3]) -> Vector<S> {
     [
@@ -369,7 +362,6 @@ struct Frame<S: Simd> {
     origin: Vector<S>,
 }
 
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 impl<S: Simd> Frame<S> {
     #[inline(always)]
     fn load(simd: S, PoseLanes { axes: [x, y, z], origin }: &PoseLanes, register: usize) -> Self {
@@ -389,14 +381,15 @@ impl<S: Simd> Frame<S> {
 
     /// Moved by a constant in its own axes.
     #[inline(always)]
-    fn shifted(mut self, offset: &[f64; 3]) -> Self {
-        for k in 0..3 {
-            // OPTIMIZATION: most offsets lie along one axis.
-            if offset[k] != 0.0 {
-                let axis = self.axes[k];
-                let by = Lanes::splat(axis[0].simd(), offset[k]);
-                self.origin = plus(self.origin, axis, by);
-            }
+    fn shifted(self, [x, y, z]: &[f64; 3]) -> Self {
+        self.shifted_along(0, *x).shifted_along(1, *y).shifted_along(2, *z)
+    }
+
+    #[inline(always)]
+    fn shifted_along(mut self, axis: usize, by: f64) -> Self {
+        // OPTIMIZATION: most offsets lie along one axis.
+        if by != 0.0 {
+            self.origin = plus(self.origin, self.axes[axis], Lanes::splat(self.origin[0].simd(), by));
         }
         self
     }

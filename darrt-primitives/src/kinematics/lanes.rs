@@ -6,6 +6,8 @@
 //!
 //! The coefficients of the polynomials are own fits at Chebyshev nodes in 50 digits, rounded to `f64`.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
+
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use pulp::Simd;
@@ -91,7 +93,6 @@ pub const fn registers<S: Simd>() -> usize {
     LANES / S::F64_LANES
 }
 
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 impl<S: Simd> Lanes<S> {
     /// The `register`-th part of a row, below [`registers`].
     #[inline(always)]
@@ -112,7 +113,6 @@ impl<S: Simd> Lanes<S> {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 impl<S: Simd> Lanes<S, 2> {
     /// One after the other.
     #[inline(always)]
@@ -122,7 +122,6 @@ impl<S: Simd> Lanes<S, 2> {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 impl<S: Simd, const N: usize> Lanes<S, N> {
     /// The same number in every lane.
     #[inline(always)]
@@ -296,7 +295,6 @@ impl<S: Simd, const N: usize> Lanes<S, N> {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 impl<S: Simd, const N: usize> Mask<S, N> {
     /// Every lane yes.
     #[inline(always)]
@@ -343,7 +341,6 @@ impl<S: Simd, const N: usize> Mask<S, N> {
 }
 
 /// `c0 + c1 z + ... + c5 z^5`, in an order that is short in time.
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn polynomial6<S: Simd, const N: usize>(z: Lanes<S, N>, c: &[f64; 6]) -> Lanes<S, N> {
     let z2 = z * z;
@@ -351,7 +348,6 @@ fn polynomial6<S: Simd, const N: usize>(z: Lanes<S, N>, c: &[f64; 6]) -> Lanes<S
 }
 
 /// `c0 + c1 z + ... + c9 z^9`.
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
 fn polynomial10<S: Simd, const N: usize>(z: Lanes<S, N>, c: &[f64; 10]) -> Lanes<S, N> {
     let z2 = z * z;
@@ -366,7 +362,6 @@ macro_rules! operator {
         impl<S: Simd, const N: usize> $trait for Lanes<S, N> {
             type Output = Self;
 
-            #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
             #[inline(always)]
             fn $method(mut self, other: Self) -> Self {
                 for n in 0..N {
@@ -379,7 +374,6 @@ macro_rules! operator {
         impl<S: Simd, const N: usize> $trait<f64> for Lanes<S, N> {
             type Output = Self;
 
-            #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
             #[inline(always)]
             fn $method(self, other: f64) -> Self {
                 self.$method(self.of(other))
@@ -396,7 +390,6 @@ operator!(Div, div, div_f64s);
 impl<S: Simd, const N: usize> Neg for Lanes<S, N> {
     type Output = Self;
 
-    #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
     #[inline(always)]
     fn neg(self) -> Self {
         self.times_sign_of(self.of(-0.0))
