@@ -76,7 +76,8 @@ fn first_free(group: &mut BenchmarkGroup<'_, WallTime>) {
     let surroundings = room.world.surroundings();
     let contacts = Contacts::default();
     let is_free = |state: &WorldState| surroundings.check(robot, state, &contacts).is_ok();
-    let mut states: Vec<_> = room.states(20 * COUNT).into_iter().filter(is_free).take(COUNT as usize).collect();
+    let mut states: Vec<_> =
+        room.states(20 * COUNT).into_iter().filter(is_free).take(usize::try_from(COUNT).unwrap()).collect();
     assert_eq!(states.len() as u64, COUNT);
     let poses: Vec<_> =
         states.iter().map(|s| world_from_base(&s.robot.base).inverse() * robot.world_from_tool(&s.robot)).collect();

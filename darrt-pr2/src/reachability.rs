@@ -130,12 +130,12 @@ impl Reachability {
             return false;
         }
         let towards = dy.atan2(dx);
-        let bearing = around(towards - yaw, BEARING_STEP, BEARINGS as usize);
+        let bearing = bearing(towards - yaw);
         let direction = around(asked.heading - towards, DIRECTION_STEP, DIRECTIONS);
         // Not negative and below a bound: no sign and no digit is lost.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small whole number")]
         let distance = distance as usize;
-        let bits = 0b111_u64.rotate_right(1).rotate_left(bearing as u32);
+        let bits = 0b111_u64.rotate_right(1).rotate_left(bearing);
         let near = |at: usize| at.saturating_sub(1)..=at + 1;
         near(asked.height).any(|height| {
             near(asked.tilt).filter_map(|tilt| self.slice(height, tilt)).any(|slice| {
@@ -211,7 +211,7 @@ impl Reachability {
                 many.of_lane(lane, &mut solutions);
                 for [pan, ..] in &solutions {
                     // The wrist stands at the bearing b when the pan is that much more; b = pan - this pan.
-                    bits |= self.ahead.rotate_right(around(*pan, BEARING_STEP, BEARINGS as usize) as u32);
+                    bits |= self.ahead.rotate_right(bearing(*pan));
                 }
             }
         }
@@ -231,6 +231,12 @@ impl Reachability {
 
 fn middle_of(cell: usize) -> f64 {
     cell as f64 + 0.5
+}
+
+/// The bit of a bearing.
+fn bearing(angle: f64) -> u32 {
+    // Below BEARINGS, so it fits.
+    u32::try_from(around(angle, BEARING_STEP, BEARINGS as usize)).unwrap_or(0)
 }
 
 /// The number of the step nearest to an angle, of `count` all around.

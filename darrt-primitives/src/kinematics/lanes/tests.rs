@@ -25,7 +25,7 @@ impl WithSimd for Functions<'_> {
 }
 
 fn bits(rows: &[Row; 3]) -> Vec<u64> {
-    rows.iter().flat_map(|row| row.0).map(|x| x.to_bits()).collect()
+    rows.iter().flat_map(|row| row.0).map(f64::to_bits).collect()
 }
 
 /// Against the platform's functions, and with the same bits on the vector unit as without.
