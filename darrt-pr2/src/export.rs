@@ -7,7 +7,7 @@ use darrt_core::plan::{Plan, Step as PlanStep};
 use darrt_primitives::mode::{Mode, TouchReason};
 
 use crate::arm::Side;
-use crate::model::URDF;
+use crate::model::embedded_description;
 use crate::plan_file::{
     AllowedContact, ContactReason, Hold, JointTable, PlanFile, PlanFormat, PlannerFacts, Pose, Step, VERSION, Waypoint,
 };
@@ -34,7 +34,7 @@ impl Exporter {
     pub fn new(problem: &ProblemFile, world: &World) -> Result<Self, PlanningError> {
         let description = match &problem.robot.urdf {
             Some(path) => RobotDescription::from_file(path),
-            None => RobotDescription::from_text(URDF),
+            None => embedded_description().cloned(),
         }
         .map_err(crate::model::ModelError::from)?;
         let joints = JointTable::new(&description, world.manipulator().model().tree());
@@ -43,6 +43,30 @@ impl Exporter {
 
     /// The plan as a file.
     pub fn export(&self, m: &World, plan: &Plan<World>, seed: u64, planner: PlannerFacts) -> PlanFile {
+        self.with_steps(m, plan, self.steps(m, plan), seed, planner)
+    }
+
+    /// The plan as a file, its steps written before.
+    pub(crate) fn with_steps(
+        &self,
+        m: &World,
+        plan: &Plan<World>,
+        steps: Vec<Step>,
+        seed: u64,
+        planner: PlannerFacts,
+    ) -> PlanFile {
+        PlanFile {
+            format: PlanFormat::DarrtPlan,
+            version: VERSION,
+            problem: self.problem.clone(),
+            seed,
+            planner,
+            start: self.waypoint(m, plan.start(), plan.start().mode.gap_m()),
+            steps,
+        }
+    }
+
+    fn steps(&self, m: &World, plan: &Plan<World>) -> Vec<Step> {
         let mut before = plan.start().clone();
         let mut steps: Vec<Step> = Vec::with_capacity(plan.steps().len());
         let mut was_steady = false;
@@ -54,15 +78,7 @@ impl Exporter {
             }
             (before, was_steady) = (end, is_steady);
         }
-        PlanFile {
-            format: PlanFormat::DarrtPlan,
-            version: VERSION,
-            problem: self.problem.clone(),
-            seed,
-            planner,
-            start: self.waypoint(m, plan.start(), plan.start().mode.gap_m()),
-            steps,
-        }
+        steps
     }
 
     /// One step, the state it ends in, and whether the hand neither opens nor closes in it.

@@ -84,8 +84,6 @@ fn flaw(problem: &ProblemFile, cancel: &Cancel) -> Option<String> {
     let mut request = PlanRequest::new(problem.clone(), 0);
     request.iterations = Some(ITERATIONS);
     request.time_limit = Some(FOREVER);
-    // Only whether there is a plan matters.
-    request.adjust = Some(|strategy| strategy.shorten.extensions = 0);
     let solved: Result<bool, PlanningError> = plan(&request, cancel, &mut Silent).map(|result| result.plan.is_some());
     match solved {
         Ok(true) => None,

@@ -8,7 +8,7 @@
 //! | the primitives of paper section 5.1 | [`arm_transit`], [`straight_line_arm_transit`], [`arm_rigid_transfer`], [`base_transit`], [`base_rigid_transfer`], [`pick`](mod@pick), [`place`](mod@place), [`push`](mod@push) |
 //! | what is a problem? | [`problem_file`], [`mod@generate`], [`grasp_families`], [`goal_means`], [`goal_check`] |
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
-//! | how well does it plan? | [`bench`], [`stopwatch`] |
+//! | how well does it plan? | [`mod@bench`], [`stopwatch`] |
 //! | how are files read, written and described? | [`text_file`], [`schema`] |
 //! | what does a person see? | [`cli`], [`picture`] |
 

@@ -6,9 +6,12 @@
 mod error;
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use darrt_geom::Body;
-use darrt_primitives::kinematics::{JointLimit, KinematicTree, RobotDescription, link_bodies, mesh_folders, no_meshes};
+use darrt_primitives::kinematics::{
+    JointLimit, KinematicTree, RobotDescription, UrdfError, link_bodies, mesh_folders, no_meshes,
+};
 use nalgebra::Isometry3;
 
 use crate::arm::{Arm, ArmConfiguration, JOINT_NAMES, LimitKind, Side};
@@ -80,13 +83,26 @@ pub struct Pr2Model {
     arms: [ArmIndices; 2],
 }
 
+/// The built-in description, read once.
+///
+/// # Errors
+/// None in practice: the description is part of the program and tested.
+pub(crate) fn embedded_description() -> Result<&'static RobotDescription, UrdfError> {
+    static READ: OnceLock<RobotDescription> = OnceLock::new();
+    if let Some(description) = READ.get() {
+        return Ok(description);
+    }
+    let description = RobotDescription::from_text(URDF)?;
+    Ok(READ.get_or_init(|| description))
+}
+
 impl Pr2Model {
     /// The robot of the built-in description.
     ///
     /// # Errors
     /// None in practice: the description is part of the program and tested.
     pub fn embedded() -> Result<Self, ModelError> {
-        Self::from_urdf(&RobotDescription::from_text(URDF)?, &no_meshes)
+        Self::from_urdf(embedded_description()?, &no_meshes)
     }
 
     /// The robot of a URDF file; meshes are looked up in `mesh_folders` and become their convex hulls.

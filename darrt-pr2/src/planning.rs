@@ -12,9 +12,9 @@ use darrt_core::observe::accounts::Accounts;
 use darrt_core::plan::Plan;
 use darrt_core::problem::{Parts, Problem};
 use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler};
-use darrt_core::search::Strategy;
+use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
-use darrt_core::solve::{Outcome, SolveOptions, solve};
+use darrt_core::solve::{Member, Outcome, SolveOptions, Until, solve_with};
 use darrt_core::verify::{Refusal, Verifier};
 use darrt_primitives::detour::Detour;
 use darrt_primitives::validity::SceneValidity;
@@ -53,6 +53,8 @@ pub struct PlanRequest {
     pub sampler: Option<SamplerName>,
     /// Which distance picks the node.
     pub distance: Option<DistanceName>,
+    /// Which search.
+    pub algorithm: Algorithm,
     /// Changes the search strategy after all else; `None`: as it is.
     pub adjust: Option<fn(&mut Strategy<World>)>,
 }
@@ -69,6 +71,7 @@ impl PlanRequest {
             restart: None,
             sampler: None,
             distance: None,
+            algorithm: Algorithm::default(),
             adjust: None,
         }
     }
@@ -110,8 +113,24 @@ struct FileVerifier {
     watch: Arc<Stopwatch>,
 }
 
-/// The steps and proofs of all plans that were accepted: one for each thread that came to one, at most.
-type Accepted = Arc<Mutex<Vec<(Vec<Step>, Proof)>>>;
+/// A plan that was accepted, its steps as they are in the file, and what the verifier saw.
+#[derive(Debug)]
+struct AcceptedPlan {
+    plan: Plan<World>,
+    steps: Vec<Step>,
+    proof: Proof,
+}
+
+impl AcceptedPlan {
+    fn is_of(&self, plan: &Plan<World>) -> bool {
+        let steps = self.plan.steps().iter().zip(plan.steps());
+        self.plan.steps().len() == plan.steps().len()
+            && steps.into_iter().all(|(a, b)| Arc::ptr_eq(&a.instance, &b.instance) && a.until == b.until)
+    }
+}
+
+/// All plans that were accepted: one for each thread that came to one, at most.
+type Accepted = Arc<Mutex<Vec<AcceptedPlan>>>;
 
 impl Verifier<World> for FileVerifier {
     fn verify(&self, m: &World, _: &WorldState, _: &dyn Goal<World>, plan: &Plan<World>) -> Result<(), Refusal> {
@@ -126,7 +145,7 @@ impl Verifier<World> for FileVerifier {
         match self.watch.verification(|| verify_unless(&file, &VerifyOptions::default(), &self.cancel)) {
             Ok(proof) => {
                 if let Ok(mut accepted) = self.accepted.lock() {
-                    accepted.push((file.steps, proof));
+                    accepted.push(AcceptedPlan { plan: plan.clone(), steps: file.steps, proof });
                 }
                 Ok(())
             }
@@ -215,7 +234,8 @@ pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer)
     };
     let begun = watch.elapsed();
     let observer = &mut Watched { observer, watch: Arc::clone(&watch) };
-    let outcome = solve(&prepared.problem, &strategy, &options, observer);
+    let members = [Member { algorithm: request.algorithm, strategy: &strategy }];
+    let outcome = solve_with(&prepared.problem, &members, Until::Solved, &options, observer);
     let times = watch.times(begun, outcome.elapsed, outcome.solution.is_some());
     Ok(PlanResult { times, ..result(&prepared, request, (sampler, distance), outcome) })
 }
@@ -229,11 +249,17 @@ fn result(
     let nodes = outcome.nodes as u64;
     let facts = PlannerFacts { sampler, distance, iterations: outcome.iterations, restarts: outcome.restarts, nodes };
     let m = prepared.problem.domain();
-    let plan = outcome.solution.map(|s| prepared.exporter.export(m, s.plan(), request.seed, facts));
-    let accepted = prepared.accepted.lock().ok();
-    let proof = plan.as_ref().zip(accepted).and_then(|(plan, accepted)| {
-        accepted.iter().find(|(steps, _)| *steps == plan.steps).map(|(_, proof)| proof.clone())
+    let accepted = outcome.solution.as_ref().and_then(|solution| {
+        let mut accepted = prepared.accepted.lock().ok()?;
+        let index = accepted.iter().position(|accepted| accepted.is_of(solution.plan()))?;
+        Some(accepted.swap_remove(index))
     });
+    let (plan, proof) = match accepted {
+        Some(AcceptedPlan { plan, steps, proof }) => {
+            (Some(prepared.exporter.with_steps(m, &plan, steps, request.seed, facts)), Some(proof))
+        }
+        None => (outcome.solution.map(|s| prepared.exporter.export(m, s.plan(), request.seed, facts)), None),
+    };
     PlanResult {
         plan,
         proof,

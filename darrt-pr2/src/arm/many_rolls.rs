@@ -1,6 +1,6 @@
 //! The closed-form inverse for eight upper arm rolls at once, with the vector unit of the processor.
 //!
-//! The formulas are those of [`closed_form`](super::closed_form); each branch (root of the quadratic, bend of the elbow,
+//! The formulas are those of `closed_form`; each branch (root of the quadratic, bend of the elbow,
 //! side of the wrist) is gone through for all lanes, with a mask of the lanes in which it is a solution.
 
 #![expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]

@@ -2,15 +2,26 @@
 
 use std::fmt;
 
+use darrt_core::distance::Weighted;
+use darrt_core::error::Error;
+use darrt_core::sample::{Frontier, Full, Placed, Sampler};
+use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
+use darrt_core::space::Place;
 
 use super::error::BenchError;
 use crate::planning::PlanRequest;
 use crate::problem_file::suggest::nearest;
 use crate::problem_file::{DistanceName, SamplerName};
+use crate::world::World;
 
 /// Metres between two nodes of the tree in `fine-steps`.
 const FINE_STEP: f64 = 0.1;
+
+/// Metres after which an extension of `bounded-step` ends.
+const SHORT_EXTENSION: f64 = 2.0;
+
+type Inner = Box<dyn Sampler<World>>;
 
 /// A named change of a planning request.
 #[derive(Clone, Copy)]
@@ -23,7 +34,7 @@ pub struct Variant {
 }
 
 /// All variants; the first is the planner as it is. A new variant is one line here.
-pub const VARIANTS: [Variant; 16] = [
+pub const VARIANTS: [Variant; 24] = [
     variant("default", "as the problem says", |_| {}),
     variant("robot-or-objects", "samples name the robot or the objects", |r| {
         r.sampler = Some(SamplerName::RobotOrObjects);
@@ -40,15 +51,51 @@ pub const VARIANTS: [Variant; 16] = [
     variant("euclidean", "distance: the sum of all ways", |r| r.distance = Some(DistanceName::Euclidean)),
     variant("exact-tour", "distance: the best order of visits", |r| r.distance = Some(DistanceName::ExactTour)),
     variant("no-reroute", "blocked motions are cut short, no way around is looked for", |r| {
-        r.adjust = Some(|s| s.reroute = None);
+        r.adjust = Some(|s| {
+            s.reroute = None;
+            s.extend.defer = false;
+        });
+    }),
+    variant("eager", "every motion is judged as soon as it is propagated", |r| {
+        r.adjust = Some(|s| s.extend.defer = false);
     }),
     variant("no-penalty", "plain arg min: nodes do not count as farther once tried", |r| {
         r.adjust = Some(|s| s.try_penalty_m = 0.0);
     }),
     variant("no-shortening", "the first plan is taken as it is", |r| {
-        r.adjust = Some(|s| s.shorten = ShortenOptions { extensions: 0 });
+        r.adjust = Some(|s| {
+            s.shorten = ShortenOptions { extensions: 0 };
+            s.extend.defer = false;
+        });
     }),
-    variant("fine-steps", "a node every 0.1 m of travel", |r| r.adjust = Some(|s| s.extend.spacing_m = FINE_STEP)),
+    variant("fine-steps", "every motion judged at once, and a node every 0.1 m of travel", |r| {
+        r.adjust = Some(|s| {
+            s.extend.spacing_m = FINE_STEP;
+            s.extend.defer = false;
+        });
+    }),
+    variant("bounded-step", "an extension ends after 2 m of travel", |r| {
+        r.adjust = Some(|s| {
+            s.extend.step_m = Some(SHORT_EXTENSION);
+            s.extend.defer = false;
+        });
+    }),
+    variant("edge-samples", "three in ten samples of objects lie near the edge of a surface", |r| {
+        r.adjust = Some(|s| resample(s, |inner| Ok(Box::new(Placed::new(inner, Place::SupportEdge, 0.3)?))));
+    }),
+    variant("support-samples", "seven in ten samples of objects stand on a surface", |r| {
+        r.adjust = Some(|s| resample(s, |inner| Ok(Box::new(Placed::new(inner, Place::OnSupport, 0.7)?))));
+    }),
+    variant("frontier", "three in ten samples lie where extensions were blocked", |r| {
+        r.adjust = Some(|s| resample(s, |inner| Ok(Box::new(Frontier::new(inner, 0.3, 0.2)?))));
+    }),
+    variant("weighted", "distance: the robot's way counts three tenths", |r| {
+        r.adjust = Some(|s| remeasure(s, Weighted::sum(0.3, 1.0)));
+    }),
+    variant("maximum", "distance: the longest way of all", |r| {
+        r.adjust = Some(|s| remeasure(s, Weighted::maximum(1.0, 1.0)));
+    }),
+    variant("connect", "DARRTConnect: a second tree from the goal", |r| r.algorithm = Algorithm::Connect),
     variant("no-restarts", "one tree until the end", |r| r.problem.budget.restart_iterations = None),
     variant("restart-300", "a new tree every 300 iterations", |r| r.restart = Some(300)),
     variant("paper", "Algorithm 1 as printed: straight lines, plain arg min, fine steps, no shortening", |r| {
@@ -58,10 +105,25 @@ pub const VARIANTS: [Variant; 16] = [
             s.reroute = None;
             s.try_penalty_m = 0.0;
             s.extend.spacing_m = FINE_STEP;
+            s.extend.defer = false;
             s.shorten = ShortenOptions { extensions: 0 };
         });
     }),
 ];
+
+/// Puts another sampler around that of `strategy`. The numbers above are in their ranges; one that is not changes nothing.
+fn resample(strategy: &mut Strategy<World>, around: fn(Inner) -> Result<Inner, Error>) {
+    let inner = std::mem::replace(&mut strategy.sampler, Box::new(Full));
+    if let Ok(sampler) = around(inner) {
+        strategy.sampler = sampler;
+    }
+}
+
+fn remeasure(strategy: &mut Strategy<World>, distance: Result<Weighted, Error>) {
+    if let Ok(distance) = distance {
+        strategy.distance = Box::new(distance);
+    }
+}
 
 const fn variant(name: &'static str, about: &'static str, change: fn(&mut PlanRequest)) -> Variant {
     Variant { name, about, change }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use darrt_core::budget::{Cancel, Stop};
+use darrt_core::search::Algorithm;
 
 use super::args::PlanOptions;
 use super::exit::{Exit, Failure};
@@ -56,6 +57,7 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
         restart: options.restart,
         sampler: options.sampler.map(Into::into),
         distance: options.distance.map(Into::into),
+        algorithm: Algorithm::default(),
         adjust: None,
     }
 }

@@ -16,13 +16,14 @@ const WIDTH: u16 = 118;
 /// Where the attempts of every primitive ended, and which bodies were most often in the way.
 pub(super) fn report(accounts: &Accounts) -> String {
     let mut text = format!(
-        "{}: {} met their target, {} added nothing; {} added; {} refused by the verifier\n\
+        "{}: {} met their target, {} added nothing; {} added; {} refused by the verifier, {} given up for a blocked motion\n\
          Every extension ends in one row of each primitive's column.\n",
         counted(accounts.extensions, "extension"),
         accounts.met,
         accounts.empty,
         counted(accounts.added, "state"),
-        counted(accounts.refused, "plan")
+        counted(accounts.refused, "plan"),
+        accounts.withdrawn
     );
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{}", counts(accounts));

@@ -12,7 +12,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use super::refusal::{Refusal, RefusalKind};
 use super::solid::Solid;
 use crate::arm::{JOINT_NAMES, Side};
-use crate::model::URDF;
+use crate::model::embedded_description;
 use crate::plan_file::{JointTable, finger_links, tool_link};
 use crate::problem_file::{ArmSide, Limits, ProblemFile};
 use crate::self_collision;
@@ -66,7 +66,7 @@ impl Robot {
             Refusal::whole(RefusalKind::Problem, format!("the robot of the problem cannot be built: {error}"))
         };
         let (description, folders) = match &problem.robot.urdf {
-            None => (RobotDescription::from_text(URDF), Vec::new()),
+            None => (embedded_description().cloned(), Vec::new()),
             Some(path) => (RobotDescription::from_file(path), path.parent().map(PathBuf::from).into_iter().collect()),
         };
         let description = description.map_err(|e| refuse(&e))?;
