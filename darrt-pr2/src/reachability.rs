@@ -28,7 +28,8 @@ const TILTS: usize = 17;
 /// Horizontal distances of the wrist from the pan axis; a cell holds those around its middle.
 const DISTANCES: usize = 17;
 /// Directions of the hand.
-const DIRECTIONS: usize = 32;
+const DIRECTIONS: usize = DIRECTION_COUNT as usize;
+const DIRECTION_COUNT: u32 = 32;
 /// Bearings of the wrist: one bit each.
 const BEARINGS: u32 = u64::BITS;
 /// Upper arm rolls looked at, in batches.
@@ -130,12 +131,12 @@ impl Reachability {
             return false;
         }
         let towards = dy.atan2(dx);
-        let bearing = around(towards - yaw, BEARING_STEP, BEARINGS as usize);
-        let direction = around(asked.heading - towards, DIRECTION_STEP, DIRECTIONS);
+        let bearing = around(towards - yaw, BEARING_STEP, BEARINGS);
+        let direction = around(asked.heading - towards, DIRECTION_STEP, DIRECTION_COUNT) as usize;
         // Not negative and below a bound: no sign and no digit is lost.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small whole number")]
         let distance = distance as usize;
-        let bits = 0b111_u64.rotate_right(1).rotate_left(bearing as u32);
+        let bits = 0b111_u64.rotate_right(1).rotate_left(bearing);
         let near = |at: usize| at.saturating_sub(1)..=at + 1;
         near(asked.height).any(|height| {
             near(asked.tilt).filter_map(|tilt| self.slice(height, tilt)).any(|slice| {
@@ -211,7 +212,7 @@ impl Reachability {
                 many.of_lane(lane, &mut solutions);
                 for [pan, ..] in &solutions {
                     // The wrist stands at the bearing b when the pan is that much more; b = pan - this pan.
-                    bits |= self.ahead.rotate_right(around(*pan, BEARING_STEP, BEARINGS as usize) as u32);
+                    bits |= self.ahead.rotate_right(around(*pan, BEARING_STEP, BEARINGS));
                 }
             }
         }
@@ -234,10 +235,10 @@ fn middle_of(cell: usize) -> f64 {
 }
 
 /// The number of the step nearest to an angle, of `count` all around.
-fn around(angle: f64, step: f64, count: usize) -> usize {
-    let nearest = (angle / step).round().rem_euclid(count as f64);
+fn around(angle: f64, step: f64, count: u32) -> u32 {
+    let nearest = (angle / step).round().rem_euclid(f64::from(count));
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number in 0..=count")]
-    let nearest = nearest as usize;
+    let nearest = nearest as u32;
     nearest % count
 }
 
