@@ -290,7 +290,7 @@ pub(crate) mod tests {
                 jobs: 1,
                 build: "b".to_owned(),
             },
-            started_unix_s: 1_700_000_000 + seed,
+            started_unix_s: seed.saturating_add(1_700_000_000),
         }
     }
 
