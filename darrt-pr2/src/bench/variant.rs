@@ -90,10 +90,10 @@ pub const VARIANTS: [Variant; 24] = [
         r.adjust = Some(|s| resample(s, |inner| Ok(Box::new(Frontier::new(inner, 0.3, 0.2)?))));
     }),
     variant("weighted", "distance: the robot's way counts three tenths", |r| {
-        r.adjust = Some(|s| remeasure(s, Weighted::sum(0.3, 1.0)));
+        r.adjust = Some(|s| remeasure(s, || Weighted::sum(0.3, 1.0)));
     }),
     variant("maximum", "distance: the longest way of all", |r| {
-        r.adjust = Some(|s| remeasure(s, Weighted::maximum(1.0, 1.0)));
+        r.adjust = Some(|s| remeasure(s, || Weighted::maximum(1.0, 1.0)));
     }),
     variant("connect", "DARRTConnect: a second tree from the goal", |r| r.algorithm = Algorithm::Connect),
     variant("no-restarts", "one tree until the end", |r| r.problem.budget.restart_iterations = None),
@@ -119,8 +119,8 @@ fn resample(strategy: &mut Strategy<World>, around: fn(Inner) -> Result<Inner, E
     }
 }
 
-fn remeasure(strategy: &mut Strategy<World>, distance: Result<Weighted, Error>) {
-    if let Ok(distance) = distance {
+fn remeasure(strategy: &mut Strategy<World>, distance: fn() -> Result<Weighted, Error>) {
+    if let Ok(distance) = distance() {
         strategy.distance = Box::new(distance);
     }
 }
