@@ -32,6 +32,7 @@ pub struct ExtendOptions {
     /// shorter, so [`Strategy::shorten`](crate::search::Strategy::shorten) should allow some extensions.
     pub defer: bool,
     /// Metres of travel after which an extension ends, as in a classic RRT; positive. `None`: it goes as far as PATH leads.
+    /// Counts only where motions are judged at once: what is deferred goes to its end.
     pub step_m: Option<f64>,
 }
 

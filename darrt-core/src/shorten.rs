@@ -9,7 +9,6 @@ use std::sync::Arc;
 
 use rand::Rng;
 
-use crate::budget::Stop;
 use crate::domain::Domain;
 use crate::extend::{Extender, Reached};
 use crate::partial::PartialState;
@@ -55,9 +54,13 @@ pub fn shorten<D: Domain>(
         return best;
     }
     let mut left = options.extensions;
-    while left > 0 && extender.interrupt.stop() != Some(Stop::Cancelled) {
+    while left > 0 {
         if let Some(steps) = mend(extender, best.as_ref().unwrap_or(plan), &mut left, rng) {
             return Some(Plan::new(plan.start().clone(), steps));
+        }
+        // Without time for leaps every further round would only judge the same motions again.
+        if extender.interrupt.stop().is_some() {
+            break;
         }
     }
     None

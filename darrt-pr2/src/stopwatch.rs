@@ -168,6 +168,10 @@ impl<V: Validity<World>> Validity<World> for Timed<V> {
         self.part.check(m, state, contacts)
     }
 
+    fn without_robot(&self) -> Option<Arc<dyn Validity<World>>> {
+        self.part.without_robot()
+    }
+
     fn free_prefix(&self, m: &World, instance: &Instance<World>, from: &WorldState) -> FreePrefix {
         let add = |sums: &mut Sums, spent: Duration| {
             sums.primitives.entry(instance.label).or_default().collision_s += spent.as_secs_f64();

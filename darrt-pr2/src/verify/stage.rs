@@ -207,21 +207,21 @@ impl Stage {
         }
     }
 
-    /// Decides anew how each pair is treated; the next check looks at all those that are treated in another way now, and
-    /// of the others at those that could be near.
+    /// Decides anew how each pair is treated; the next check looks at all those that are treated or moved in another way now
+    /// (what is taken or let go may jump by what a file may be off), and of the others at those that could be near.
     pub(super) fn set_rules(&mut self, rule: impl Fn(PairKind) -> Rule) {
-        let mut known_m = vec![f64::NEG_INFINITY; self.pairs.len()];
+        let mut known = vec![(Movers::NONE, f64::NEG_INFINITY); self.pairs.len()];
         for class in std::mem::take(&mut self.classes) {
             for due in class.apart.iter().chain(&class.standing) {
-                known_m[due.pair] = due.reserve_m - class.travelled_m;
+                known[due.pair] = (class.between, due.reserve_m - class.travelled_m);
             }
         }
         let mut dues: BTreeMap<Movers, [Vec<Due>; 2]> = BTreeMap::new();
-        for ((index, pair), known_m) in self.pairs.iter_mut().enumerate().zip(known_m) {
+        for ((index, pair), (moved, known_m)) in self.pairs.iter_mut().enumerate().zip(known) {
             let before = std::mem::replace(&mut pair.rule, rule(pair.kind));
             let between = self.movers[pair.a].between(self.movers[pair.b]);
             let [apart, standing] = dues.entry(between).or_default();
-            let reserve_m = if pair.rule == before { known_m } else { f64::NEG_INFINITY };
+            let reserve_m = if (pair.rule, between) == (before, moved) { known_m } else { f64::NEG_INFINITY };
             let due = Due { reserve_m, pair: index };
             match pair.rule {
                 Rule::Free => {}
