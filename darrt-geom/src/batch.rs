@@ -1,9 +1,10 @@
-//! Distance of one ball to many boxes at once: the first and cheapest look of the collision checker.
+//! Distance of one ball to many boxes, or to many balls, at once: the first and cheapest look of the collision checker.
 //!
-//! The boxes lie in blocks of [`LANES`], each coordinate of a block side by side, so that the compiler turns the loops over
+//! They lie in blocks of [`LANES`], each coordinate of a block side by side, so that the compiler turns the loops over
 //! lanes into vector instructions: those that the processor has, found out when the program runs. Multiplications and
 //! additions are kept apart (no fused ones), so that every processor gives the same bits.
 
+use crate::body_set::BodySet;
 use nalgebra::{Matrix3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 
@@ -152,9 +153,94 @@ impl BoxBatch {
     }
 }
 
+/// [`LANES`] balls, transposed.
+#[derive(Debug, Clone, Copy)]
+struct Balls {
+    centre: [[f64; LANES]; 3],
+    radius: [f64; LANES],
+}
+
+/// Balls that move, by body: where each of them is, side by side.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct BallBatch {
+    blocks: Vec<Balls>,
+}
+
+impl BallBatch {
+    /// As many balls as there are radii in metres, farther than any other until they are put somewhere.
+    pub(crate) fn new(radii: &[f64]) -> Self {
+        let block = |chunk: &[f64]| {
+            let mut block = Balls { centre: [[NOWHERE; LANES]; 3], radius: [0.0; LANES] };
+            block.radius.iter_mut().zip(chunk).for_each(|(slot, radius)| *slot = *radius);
+            block
+        };
+        Self { blocks: radii.chunks(LANES).map(block).collect() }
+    }
+
+    /// Puts a ball somewhere.
+    #[inline]
+    pub(crate) fn put(&mut self, index: usize, centre: &Vector3<f64>) {
+        if let Some(block) = self.blocks.get_mut(index / LANES) {
+            let lane = index % LANES;
+            block.centre.iter_mut().zip(centre.iter()).for_each(|(row, x)| row[lane] = *x);
+        }
+    }
+
+    /// Where the centre of a ball is.
+    #[inline]
+    pub(crate) fn centre(&self, index: usize) -> Vector3<f64> {
+        let block = self.blocks.get(index / LANES);
+        block.map_or_else(|| Vector3::repeat(NOWHERE), |block| block.centre.map(|row| row[index % LANES]).into())
+    }
+
+    /// The balls of which some point is nearer to a point than `reach` metres (not negative), from the one at `first` on;
+    /// of those before it some.
+    #[inline]
+    pub(crate) fn near(&self, first: usize, point: &Vector3<f64>, reach: f64) -> BodySet {
+        Arch::new().dispatch(NearBalls { blocks: &self.blocks, first: first / LANES, point, reach })
+    }
+}
+
+/// The search of [`BallBatch::near`], compiled for every kind of processor.
+struct NearBalls<'a> {
+    blocks: &'a [Balls],
+    /// The block to begin with.
+    first: usize,
+    point: &'a Vector3<f64>,
+    reach: f64,
+}
+
+impl WithSimd for NearBalls<'_> {
+    type Output = BodySet;
+
+    #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> BodySet {
+        let mut near = BodySet::EMPTY;
+        for (number, block) in self.blocks.iter().enumerate().skip(self.first) {
+            let mut squared = [0.0; LANES];
+            for (row, at) in block.centre.iter().zip(self.point.iter()) {
+                for (sum, x) in squared.iter_mut().zip(row) {
+                    *sum += (at - x) * (at - x);
+                }
+            }
+            let mut bits = 0_u8;
+            for (lane, (squared, radius)) in squared.iter().zip(&block.radius).enumerate() {
+                let limit = self.reach + radius;
+                // Written so that a NaN is near.
+                let is_far = *squared >= limit * limit;
+                bits |= u8::from(!is_far) << lane;
+            }
+            near.insert_eight(number, bits);
+        }
+        near
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body_set::BodyIndex;
     use nalgebra::UnitQuaternion;
     use proptest::prelude::*;
 
@@ -186,6 +272,26 @@ mod tests {
                 prop_assert_eq!(index, found.index);
                 prop_assert!((expected - found.distance).abs() < 1e-12);
             }
+        }
+
+        #[test]
+        fn balls_are_found_as_one_by_one(
+            balls in prop::collection::vec((prop::array::uniform3(-2.0_f64..2.0), 0.0_f64..0.5), 0..70),
+            at in prop::array::uniform3(-2.0_f64..2.0), reach in 0.0_f64..2.0,
+        ) {
+            let at = Vector3::from(at);
+            let radii: Vec<f64> = balls.iter().map(|(_, radius)| *radius).collect();
+            let mut batch = BallBatch::new(&radii);
+            prop_assert!(batch.near(0, &at, reach).is_empty());
+            balls.iter().enumerate().for_each(|(i, (centre, _))| batch.put(i, &Vector3::from(*centre)));
+            let near = batch.near(0, &at, reach);
+            let later = batch.near(balls.len() / 2, &at, reach);
+            prop_assert!((balls.len() as u16 / 2..70).all(|i| later.contains(BodyIndex::new(i)) == near.contains(BodyIndex::new(i))));
+            for ((centre, radius), i) in balls.iter().zip(0_u16..) {
+                let gap = (Vector3::from(*centre) - at).norm() - radius - reach;
+                prop_assert!(gap.abs() < 1e-12 || near.contains(BodyIndex::new(i)) == (gap < 0.0));
+            }
+            prop_assert!(near.iter().all(|i| i.get() < balls.len()));
         }
 
         #[test]

@@ -47,6 +47,14 @@ impl BodySet {
         }
     }
 
+    /// Adds those of the bodies `8 * eight` to `8 * eight + 7` whose bits are set.
+    #[inline]
+    pub(crate) fn insert_eight(&mut self, eight: usize, bits: u8) {
+        if let Some(word) = self.words.get_mut(eight / 8) {
+            *word |= u64::from(bits) << (eight % 8 * 8);
+        }
+    }
+
     /// Takes a body out.
     pub fn remove(&mut self, body: BodyIndex) {
         if let Some(word) = self.words.get_mut(body.get() / 64) {

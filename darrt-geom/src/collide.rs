@@ -10,6 +10,7 @@
 
 mod clear;
 mod model;
+mod moving;
 mod pair;
 mod rod;
 mod scan;
@@ -17,10 +18,10 @@ mod solid;
 mod watch;
 
 use crate::allowed::AllowedContacts;
-use crate::batch::{BoxBatch, NearBox, PlacedBox};
+use crate::batch::{BallBatch, BoxBatch, NearBox, PlacedBox};
 use crate::body_set::{BodyIndex, BodySet};
 use crate::narrow;
-use nalgebra::{Isometry3, Point3, Vector3};
+use nalgebra::{Isometry3, Point3};
 use solid::{Plane, Solid};
 use std::ops::Range;
 use std::sync::Arc;
@@ -87,8 +88,6 @@ pub struct CollisionModel {
     solids: Vec<Solid>,
     /// Half spaces; their bodies are fixed.
     planes: Vec<Plane>,
-    /// Tested pairs of moving bodies, smaller index first.
-    moving_pairs: Vec<(BodyIndex, BodyIndex)>,
     moving: BodySet,
     /// Solids of the fixed bodies, for the batch, and their numbers in `solids`.
     fixed_boxes: BoxBatch,
@@ -102,8 +101,8 @@ pub struct CollisionModel {
 struct Poses {
     /// By body.
     world_from_body: Vec<Isometry3<f64>>,
-    /// World centre of the ball around each body.
-    centres: Vec<Vector3<f64>>,
+    /// The balls around the bodies, in the world.
+    balls: BallBatch,
     /// By solid.
     placed: Vec<PlacedBox>,
     /// Bodies whose pose is missing or unsound.
@@ -205,9 +204,7 @@ impl CollisionModel {
         if let Some(pose) = poses.world_from_body.get_mut(body.get()) {
             *pose = *world_from_body;
         }
-        if let Some(centre) = poses.centres.get_mut(body.get()) {
-            *centre = solid::carried(&axes, &origin, &registered.centre);
-        }
+        poses.balls.put(body.get(), &solid::carried(&axes, &origin, &registered.centre));
         let range = registered.solids.clone();
         let (Some(placed), Some(solids)) = (poses.placed.get_mut(range.clone()), self.solids.get(range)) else {
             return;

@@ -1,6 +1,7 @@
 //! From the planner's plan to a plan file: every step as waypoints, every joint by name, every contact with its reason.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use darrt_core::motion::{Instance, Motion};
 use darrt_core::plan::{Plan, Step as PlanStep};
@@ -121,7 +122,7 @@ impl Exporter {
         let body = m.manipulator().whole_body(&state.robot, gap_m);
         let joints = self.joints.complete(&m.manipulator().model().joint_values(&body));
         let poses = m.movables().iter().zip(&state.objects);
-        let objects: BTreeMap<_, _> = poses.map(|(o, pose)| (o.body.name.to_string(), Pose::from(*pose))).collect();
+        let objects: BTreeMap<_, _> = poses.map(|(o, pose)| (Arc::clone(&o.body.name), Pose::from(*pose))).collect();
         Waypoint { base: state.robot.base, joints, objects }
     }
 }

@@ -21,6 +21,7 @@ mod unique;
 pub mod write;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use schemars::JsonSchema;
@@ -145,10 +146,10 @@ pub struct Waypoint {
     pub base: [f64; 3],
     /// Every movable joint of the robot by its name in the robot description, rad or m; mimic joints included.
     #[serde(deserialize_with = "unique::map")]
-    pub joints: BTreeMap<String, f64>,
+    pub joints: BTreeMap<Arc<str>, f64>,
     /// Every movable object's pose in the world.
     #[serde(deserialize_with = "unique::map")]
-    pub objects: BTreeMap<String, Pose>,
+    pub objects: BTreeMap<Arc<str>, Pose>,
 }
 
 /// A pose in space.

@@ -56,6 +56,12 @@ pub struct Surroundings {
     workers: Mutex<Vec<Worker>>,
 }
 
+/// The bodies of the hand as they hang on the tool.
+#[derive(Debug, Clone)]
+pub struct Hand {
+    tool_from_link: Vec<(BodyIndex, Isometry3<f64>)>,
+}
+
 /// Memory of one check at a time; reused, so that a check allocates nothing.
 pub(crate) struct Worker {
     scratch: Scratch,
@@ -146,10 +152,7 @@ impl Surroundings {
             for (id, pose) in self.links.iter().zip(link_poses.iter()) {
                 self.model.set_pose(&mut worker.scratch, *id, pose);
             }
-            // What the arm does and where the objects are must not count, but every body needs a pose.
-            for id in &self.objects {
-                self.model.set_pose(&mut worker.scratch, *id, &Isometry3::identity());
-            }
+            // What the arm does and where the objects are does not count.
             let against = BodySet::ALL.difference(self.model.moving());
             self.is_clear(worker, &self.base_links, &against)
         })
@@ -191,28 +194,32 @@ impl Surroundings {
         hit.map(|_| ()).map_err(|hit| self.blame(&hit))
     }
 
-    /// Could the hand be at `world_from_tool` with the objects and the opening of `like`, if there were no arm behind it?
-    /// The hand and the object that `contacts` or the mode names are asked about. Much cheaper than to look for an arm
-    /// and a base first.
+    /// The hand with the opening of `like`, for [`Surroundings::check_hand`].
+    pub fn hand<M: Manipulator>(&self, robot: &M, like: &TabletopState<M>) -> Hand {
+        let mut world_from_link = vec![Isometry3::identity(); self.links.len()];
+        robot.link_poses(&like.robot, like.mode.gap_m(), &mut world_from_link);
+        let tool_from_world = robot.world_from_tool(&like.robot).inverse();
+        let links = self.links.iter().zip(&world_from_link).filter(|(id, _)| self.hand_links.contains(**id));
+        Hand { tool_from_link: links.map(|(id, pose)| (*id, tool_from_world * pose)).collect() }
+    }
+
+    /// Could the hand be at `world_from_tool` with the objects of `like`, if there were no arm behind it? The hand and the
+    /// object that `contacts` or the mode names are asked about. Much cheaper than to look for an arm and a base first.
     ///
     /// # Errors
     /// The first pair found.
     pub fn check_hand<M: Manipulator>(
         &self,
-        robot: &M,
+        hand: &Hand,
         like: &TabletopState<M>,
         world_from_tool: &Isometry3<f64>,
         contacts: &Contacts,
     ) -> Result<(), Blame> {
         let hit = self.with_worker(|worker| {
             self.allow(like, contacts, &mut worker.allowed);
-            self.pose_all(robot, like, worker);
-            // The hand is rigid to the tool, so it is where the arm of `like` has it, carried over.
-            let there_from_here = world_from_tool * robot.world_from_tool(&like.robot).inverse();
-            for (id, pose) in self.links.iter().zip(&worker.poses) {
-                if self.hand_links.contains(*id) {
-                    self.model.set_pose(&mut worker.scratch, *id, &(there_from_here * pose));
-                }
+            self.pose_objects(like, worker);
+            for (id, tool_from_link) in &hand.tool_from_link {
+                self.model.set_pose(&mut worker.scratch, *id, &(world_from_tool * tool_from_link));
             }
             let mut moved = self.hand_links;
             let with = contacts.support.map(|(object, _)| object).or(like.mode.held().map(|held| held.object));
@@ -229,7 +236,6 @@ impl Surroundings {
     /// its length, and what ends it.
     pub fn free_slide<M: Manipulator>(
         &self,
-        robot: &M,
         from: &TabletopState<M>,
         object: ObjectId,
         way: &Vector3<f64>,
@@ -240,7 +246,7 @@ impl Surroundings {
         };
         let hit = self.with_worker(|worker| {
             self.allow(from, &Contacts::default(), &mut worker.allowed);
-            self.pose_all(robot, from, worker);
+            self.pose_objects(from, worker);
             let mut moved = BodySet::EMPTY;
             moved.insert(id);
             let others = BodySet::ALL.difference(&self.all_links);
@@ -265,18 +271,33 @@ impl Surroundings {
     /// Lends a worker to `work`.
     pub(crate) fn with_worker<T>(&self, work: impl FnOnce(&mut Worker) -> T) -> T {
         let spare = self.workers.lock().ok().and_then(|mut w| w.pop());
-        let mut worker = spare.unwrap_or_else(|| Worker {
-            scratch: self.model.scratch(),
-            poses: vec![Isometry3::identity(); self.links.len() + self.objects.len()],
-            allowed: AllowedContacts::none(),
-            reach: vec![0.0; self.links.len() + self.objects.len()],
-            link_travel: vec![0.0; self.links.len()],
-        });
+        let mut worker = spare.unwrap_or_else(|| self.new_worker());
         let result = work(&mut worker);
         if let Ok(mut workers) = self.workers.lock() {
             workers.push(worker);
         }
         result
+    }
+
+    fn new_worker(&self) -> Worker {
+        let poses = vec![Isometry3::identity(); self.links.len() + self.objects.len()];
+        let mut scratch = self.model.scratch();
+        // Questions place only the bodies that they are about, and the others must have some pose.
+        self.model.set_poses(&mut scratch, &poses);
+        Worker {
+            scratch,
+            reach: vec![0.0; poses.len()],
+            poses,
+            allowed: AllowedContacts::none(),
+            link_travel: vec![0.0; self.links.len()],
+        }
+    }
+
+    /// Puts the objects where they are in `state`.
+    fn pose_objects<M: Manipulator>(&self, state: &TabletopState<M>, worker: &mut Worker) {
+        for (id, pose) in self.objects.iter().zip(&state.objects) {
+            self.model.set_pose(&mut worker.scratch, *id, pose);
+        }
     }
 
     /// Puts every body where it is in `state`.

@@ -50,7 +50,7 @@ impl CollisionModel {
         let near = too_near(query);
         for body in query.moved.intersection(&self.moving).iter() {
             let registered = &self.bodies[body.get()];
-            self.fixed_boxes.near(&poses.centres[body.get()], near + registered.radius, boxes);
+            self.fixed_boxes.near(&poses.balls.centre(body.get()), near + registered.radius, boxes);
             for found in &*boxes {
                 let other = self.fixed_solids[found.index];
                 let partner = self.solids[other].body;
@@ -72,20 +72,17 @@ impl CollisionModel {
                 }
             }
         }
-        for &(a, b) in &self.moving_pairs {
-            let (of_a, of_b) = (&self.bodies[a.get()], &self.bodies[b.get()]);
-            let reach = near + of_a.radius + of_b.radius;
-            let apart = (poses.centres[b.get()] - poses.centres[a.get()]).norm_squared();
-            if apart >= reach * reach || !Self::asked(query, a, b) {
-                continue;
-            }
-            for own in of_a.solids.clone() {
-                let met = |other: &usize| self.meets(poses, own, Other::Solid(*other), near);
-                if let Some(other) = of_b.solids.clone().find(met) {
-                    return Some((own, Other::Solid(other)));
-                }
-            }
-        }
-        None
+        self.near_moving(
+            poses,
+            query,
+            |_| near,
+            |a, b| {
+                self.bodies[a.get()].solids.clone().find_map(|own| {
+                    let met = |other: &usize| self.meets(poses, own, Other::Solid(*other), near);
+                    let other = self.bodies[b.get()].solids.clone().find(met)?;
+                    Some((own, Other::Solid(other)))
+                })
+            },
+        )
     }
 }

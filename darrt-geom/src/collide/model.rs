@@ -2,7 +2,7 @@
 
 use super::solid::{Plane, Solid};
 use super::{CollisionModel, Poses, Registered};
-use crate::batch::{BoxBatch, PlacedBox};
+use crate::batch::{BallBatch, BoxBatch, PlacedBox};
 use crate::body::Body;
 use crate::body_set::{BodyIndex, BodySet, MAXIMUM_BODIES};
 use crate::check;
@@ -70,7 +70,6 @@ impl CollisionModelBuilder {
         let indices: Vec<BodyIndex> = (0_u16..).map(BodyIndex::new).take(bodies.len()).collect();
         let is_moving: Vec<bool> = bodies.iter().map(|body| body.fixed.is_none()).collect();
         let moving = |body: BodyIndex| is_moving.get(body.get()).copied().unwrap_or(false);
-        let mut moving_pairs = Vec::new();
         for (i, &a) in indices.iter().enumerate() {
             for &b in indices.iter().skip(i + 1) {
                 if disabled.contains(&(a, b)) || !(moving(a) || moving(b)) {
@@ -81,16 +80,13 @@ impl CollisionModelBuilder {
                         registered.partners.insert(partner);
                     }
                 }
-                if moving(a) && moving(b) {
-                    moving_pairs.push((a, b));
-                }
             }
         }
         let nowhere = PlacedBox { centre: Vector3::zeros(), axes: Matrix3::identity(), half: Vector3::zeros() };
         let moving: BodySet = indices.iter().copied().filter(|&body| moving(body)).collect();
         let initial = Poses {
             world_from_body: vec![Isometry3::identity(); bodies.len()],
-            centres: vec![Vector3::zeros(); bodies.len()],
+            balls: BallBatch::new(&bodies.iter().map(|body| body.radius).collect::<Vec<_>>()),
             placed: vec![nowhere; solids.len()],
             unsound: moving,
         };
@@ -98,7 +94,6 @@ impl CollisionModelBuilder {
             bodies,
             solids,
             planes,
-            moving_pairs,
             moving,
             fixed_boxes: BoxBatch::default(),
             fixed_solids: Vec::new(),

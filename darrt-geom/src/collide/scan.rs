@@ -86,7 +86,7 @@ impl CollisionModel {
         for body in query.moved.intersection(&self.moving).iter() {
             let registered = &self.bodies[body.get()];
             let enough = enough(query, start);
-            self.fixed_boxes.near(&poses.centres[body.get()], enough + registered.radius, near);
+            self.fixed_boxes.near(&poses.balls.centre(body.get()), enough + registered.radius, near);
             for found in &*near {
                 let other = self.fixed_solids[found.index];
                 let partner = self.solids[other].body;
@@ -110,25 +110,24 @@ impl CollisionModel {
 
     /// Collects the candidates between moving bodies.
     fn against_moving(&self, poses: &Poses, query: &Query<'_>, start: f64, candidates: &mut Vec<Candidate>) {
-        for &(a, b) in &self.moving_pairs {
-            let (of_a, of_b) = (&self.bodies[a.get()], &self.bodies[b.get()]);
-            let enough = enough(query, start);
-            let reach = enough + of_a.radius + of_b.radius;
-            // OPTIMIZATION: squares compare without a root.
-            let apart = (poses.centres[b.get()] - poses.centres[a.get()]).norm_squared();
-            if apart >= reach * reach || !Self::asked(query, a, b) {
-                continue;
-            }
-            for i in of_a.solids.clone() {
-                for j in of_b.solids.clone() {
-                    let between = (poses.placed[j].centre - poses.placed[i].centre).norm();
-                    let bound = between - self.solids[i].radius - self.solids[j].radius;
-                    if bound < enough {
-                        candidates.push(Candidate { bound, solids: (i, j) });
+        let enough = enough(query, start);
+        self.near_moving(
+            poses,
+            query,
+            |_| enough,
+            |a, b| {
+                for i in self.bodies[a.get()].solids.clone() {
+                    for j in self.bodies[b.get()].solids.clone() {
+                        let between = (poses.placed[j].centre - poses.placed[i].centre).norm();
+                        let bound = between - self.solids[i].radius - self.solids[j].radius;
+                        if bound < enough {
+                            candidates.push(Candidate { bound, solids: (i, j) });
+                        }
                     }
                 }
-            }
-        }
+                None::<()>
+            },
+        );
     }
 
     /// Settles the pairs with half spaces.

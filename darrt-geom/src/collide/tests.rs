@@ -3,7 +3,7 @@ use crate::ContactReason;
 use crate::body::{Body, Part};
 use crate::oracle::{self, PosedBody};
 use crate::shape::Shape;
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 /// Largest coordinate of a random pose.

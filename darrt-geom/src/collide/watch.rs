@@ -70,13 +70,14 @@ impl CollisionModel {
     pub fn watch(&self, scratch: &mut Scratch, query: &Query<'_>, travel: &Travel<'_>) {
         self.ensure_fits(scratch);
         let Scratch { poses, near, watch, .. } = scratch;
-        watch.pairs.clear();
-        watch.to = travel.to;
-        watch.clearance = query.clearance.max(0.0);
+        let Watch { pairs, to, clearance } = watch;
+        pairs.clear();
+        *to = travel.to;
+        *clearance = query.clearance.max(0.0);
         let too_near = too_near(query);
         let span = travel.to - travel.from;
         // A pair farther apart than this does not matter on this leg.
-        let enough = |speed: f64| (watch.clearance + span * speed).max(too_near);
+        let enough = |speed: f64| (*clearance + span * speed).max(too_near);
         for body in query.moved.intersection(&self.moving).iter() {
             let registered = &self.bodies[body.get()];
             // Fixed bodies do not travel.
@@ -84,7 +85,7 @@ impl CollisionModel {
             if speed <= 0.0 {
                 continue;
             }
-            self.fixed_boxes.near(&poses.centres[body.get()], enough(speed) + registered.radius, near);
+            self.fixed_boxes.near(&poses.balls.centre(body.get()), enough(speed) + registered.radius, near);
             for found in &*near {
                 let other = self.fixed_solids[found.index];
                 let partner = self.solids[other].body;
@@ -93,30 +94,36 @@ impl CollisionModel {
                 }
                 let other = Other::Solid(other);
                 let own = registered.solids.clone();
-                watch.pairs.extend(own.map(|own| Watched { own, other, speed, until: travel.from }));
+                pairs.extend(own.map(|own| Watched { own, other, speed, until: travel.from }));
             }
             for (number, plane) in self.planes.iter().enumerate() {
                 if registered.partners.contains(plane.body) && Self::asked(query, body, plane.body) {
                     let other = Other::Plane(number);
                     let own = registered.solids.clone();
-                    watch.pairs.extend(own.map(|own| Watched { own, other, speed, until: travel.from }));
+                    pairs.extend(own.map(|own| Watched { own, other, speed, until: travel.from }));
                 }
             }
         }
-        for &(a, b) in &self.moving_pairs {
-            let speed = travel.speed(a, b);
-            let (of_a, of_b) = (&self.bodies[a.get()], &self.bodies[b.get()]);
-            let apart = enough(speed) + of_a.radius + of_b.radius;
-            // OPTIMIZATION: squares compare without a root.
-            let centres = (poses.centres[b.get()] - poses.centres[a.get()]).norm_squared();
-            if speed <= 0.0 || centres >= apart * apart || !Self::asked(query, a, b) {
-                continue;
-            }
-            for own in of_a.solids.clone() {
-                let others = of_b.solids.clone().map(Other::Solid);
-                watch.pairs.extend(others.map(|other| Watched { own, other, speed, until: travel.from }));
-            }
-        }
+        let fastest = self.moving.iter().map(|body| travel.of(body)).fold(0.0, f64::max);
+        self.near_moving(
+            poses,
+            query,
+            |body| enough(travel.of(body) + fastest),
+            |a, b| {
+                let speed = travel.speed(a, b);
+                let (of_a, of_b) = (&self.bodies[a.get()], &self.bodies[b.get()]);
+                let apart = enough(speed) + of_a.radius + of_b.radius;
+                // OPTIMIZATION: squares compare without a root.
+                let centres = (poses.balls.centre(b.get()) - poses.balls.centre(a.get())).norm_squared();
+                if speed > 0.0 && centres < apart * apart {
+                    for own in of_a.solids.clone() {
+                        let others = of_b.solids.clone().map(Other::Solid);
+                        pairs.extend(others.map(|other| Watched { own, other, speed, until: travel.from }));
+                    }
+                }
+                None::<()>
+            },
+        );
     }
 
     /// The parameter up to which nothing that is watched can come nearer than the clearance, when the bodies stand where

@@ -7,6 +7,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use arrayvec::ArrayVec;
 use darrt_primitives::kinematics::JointLimit;
 use darrt_primitives::kinematics::lanes::{Lanes, Mask, Row, registers};
 use nalgebra::Isometry3;
@@ -28,32 +29,38 @@ struct Branch {
     is_solution: Row,
 }
 
+impl Branch {
+    const EMPTY: Self = Self { joints: [Row::splat(0.0); 7], is_solution: Row::splat(0.0) };
+}
+
 /// Solutions of one pose for [`LANES`](darrt_primitives::kinematics::lanes::LANES) upper arm rolls; reused from call to call.
 #[derive(Debug, Clone)]
 pub struct RollSolutions {
-    branches: [Branch; BRANCHES],
-    /// Which branches have a solution in some lane.
-    used: [bool; BRANCHES],
+    /// Those that have a solution in some lane. OPTIMIZATION: room for all, so none is written that nobody reads.
+    branches: ArrayVec<Branch, BRANCHES>,
+    /// Where in there each branch is.
+    places: [Option<usize>; BRANCHES],
 }
 
 impl Default for RollSolutions {
     fn default() -> Self {
-        let empty = Branch { joints: [Row::splat(0.0); 7], is_solution: Row::splat(0.0) };
-        Self { branches: [empty; BRANCHES], used: [false; BRANCHES] }
+        Self { branches: ArrayVec::new(), places: [None; BRANCHES] }
     }
 }
 
 impl RollSolutions {
     /// Has no roll a solution?
     pub fn is_empty(&self) -> bool {
-        !self.used.contains(&true)
+        self.branches.is_empty()
     }
 
     /// Writes the solutions for the roll of one lane into `out`, which is cleared first.
     pub fn of_lane(&self, lane: usize, out: &mut Solutions) {
         out.clear();
-        for (branch, used) in self.branches.iter().zip(self.used) {
-            if used && branch.is_solution.0.get(lane) == Some(&1.0) {
+        for place in self.places.into_iter().flatten() {
+            if let Some(branch) = self.branches.get(place)
+                && branch.is_solution.0.get(lane) == Some(&1.0)
+            {
                 let q: ArmConfiguration = branch.joints.each_ref().map(|row| row.0[lane]);
                 // Merged branches give one configuration twice; there are no more branches than places.
                 if !out.contains(&q) {
@@ -97,7 +104,8 @@ impl WithSimd for Run<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { limits, target, rolls, out } = self;
-        out.used = [false; BRANCHES];
+        out.branches.clear();
+        out.places = [None; BRANCHES];
         for register in 0..registers::<S>() {
             solve(limits, &target, Lanes::load(simd, &rolls, register), register, out);
         }
@@ -188,11 +196,12 @@ fn wrist<S: Simd>(
         if is_inside.is_none() {
             continue;
         }
-        let (branch, used) = (&mut out.branches[branch + side], &mut out.used[branch + side]);
-        if !*used {
-            *used = true;
-            branch.is_solution = Row::splat(0.0);
+        let RollSolutions { branches, places } = &mut *out;
+        if places[branch + side].is_none() {
+            places[branch + side] = Some(branches.len());
+            branches.push(Branch::EMPTY);
         }
+        let Some(branch) = places[branch + side].and_then(|place| branches.get_mut(place)) else { continue };
         is_inside.ones().store(&mut branch.is_solution, register);
         let [to1, to2, to3, to4, to5, to6, to7] = &mut branch.joints;
         for (joint, row) in [(q1, to1), (q2, to2), (q3, to3), (q4, to4), (q5, to5), (q6, to6), (q7, to7)] {

@@ -38,9 +38,9 @@ impl PlanFile {
 }
 
 fn first_missing<'a>(start: &'a Waypoint, at: &Waypoint) -> Option<(&'static str, &'a str)> {
-    let joint = start.joints.keys().find(|name| !at.joints.contains_key(*name)).map(|name| ("joint", name.as_str()));
+    let joint = start.joints.keys().find(|name| !at.joints.contains_key(*name)).map(|name| ("joint", &**name));
     let object = || start.objects.keys().find(|name| !at.objects.contains_key(*name));
-    joint.or_else(|| object().map(|name| ("object", name.as_str())))
+    joint.or_else(|| object().map(|name| ("object", &**name)))
 }
 
 #[cfg(test)]

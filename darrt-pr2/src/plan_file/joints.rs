@@ -37,22 +37,27 @@ impl JointTable {
 
     /// Every movable joint with its value, for the values of the tree's variables (rad or m, in the tree's order).
     /// A missing variable counts as zero.
-    pub fn complete(&self, variables: &[f64]) -> BTreeMap<String, f64> {
+    pub fn complete(&self, variables: &[f64]) -> BTreeMap<Arc<str>, f64> {
         let value = |entry: &Entry| entry.value(variables.get(entry.variable).copied().unwrap_or(0.0));
-        self.entries.iter().map(|(name, entry)| (name.to_string(), value(entry))).collect()
+        self.entries.iter().map(|(name, entry)| (Arc::clone(name), value(entry))).collect()
     }
 
     /// The values of the tree's variables from a list of all joints.
     ///
     /// # Errors
     /// [`JointFlaw`] for a joint that is missing, unknown, not finite, or does not follow its driver to 1e-9.
-    pub fn variables(&self, joints: &BTreeMap<String, f64>) -> Result<Vec<f64>, JointFlaw> {
-        if let Some(name) = joints.keys().find(|name| !self.entries.contains_key(name.as_str())) {
-            return Err(JointFlaw::Unknown { name: name.clone() });
-        }
+    pub fn variables(&self, joints: &BTreeMap<Arc<str>, f64>) -> Result<Vec<f64>, JointFlaw> {
         let mut variables = vec![0.0; self.free];
+        // Both are in the order of their names, so that what is unknown or missing shows where they part.
+        let mut listed = joints.iter().peekable();
         for (name, entry) in &self.entries {
-            let value = *joints.get(&**name).ok_or_else(|| JointFlaw::Missing { name: name.to_string() })?;
+            let (found, value) = match listed.next_if(|(found, _)| *found <= name) {
+                Some((found, value)) => (found, *value),
+                None => return Err(JointFlaw::Missing { name: name.to_string() }),
+            };
+            if found != name {
+                return Err(JointFlaw::Unknown { name: found.to_string() });
+            }
             if !value.is_finite() {
                 return Err(JointFlaw::NotFinite { name: name.to_string(), value });
             }
@@ -62,12 +67,14 @@ impl JointTable {
                 *slot = value;
             }
         }
-        for (name, entry) in self.entries.iter().filter(|(_, entry)| !entry.is_free) {
+        if let Some((name, _)) = listed.next() {
+            return Err(JointFlaw::Unknown { name: name.to_string() });
+        }
+        for ((name, entry), found) in self.entries.iter().zip(joints.values()).filter(|((_, entry), _)| !entry.is_free) {
             let expected = entry.value(variables.get(entry.variable).copied().unwrap_or(0.0));
-            let found = joints.get(&**name).copied().unwrap_or(f64::NAN);
             let off = (found - expected).abs();
             if off.is_nan() || off > 1e-9 {
-                return Err(JointFlaw::NotFollowing { name: name.to_string(), found, expected });
+                return Err(JointFlaw::NotFollowing { name: name.to_string(), found: *found, expected });
             }
         }
         Ok(variables)
@@ -158,7 +165,7 @@ mod tests {
     fn wrong_lists_are_refused_by_name() {
         let (table, tree) = table();
         let good = table.complete(&tree.neutral());
-        let message = |edit: &dyn Fn(&mut BTreeMap<String, f64>)| {
+        let message = |edit: &dyn Fn(&mut BTreeMap<Arc<str>, f64>)| {
             let mut joints = good.clone();
             edit(&mut joints);
             table.variables(&joints).unwrap_err().to_string()
@@ -168,15 +175,15 @@ mod tests {
         });
         assert!(missing.contains("`torso_lift_joint` is missing"), "{missing}");
         let unknown = message(&|joints| {
-            joints.insert("tail_joint".to_owned(), 0.0);
+            joints.insert("tail_joint".into(), 0.0);
         });
         assert!(unknown.contains("no movable joint `tail_joint`"), "{unknown}");
         let nan = message(&|joints| {
-            joints.insert("l_elbow_flex_joint".to_owned(), f64::NAN);
+            joints.insert("l_elbow_flex_joint".into(), f64::NAN);
         });
         assert!(nan.contains("NaN"), "{nan}");
         let apart = message(&|joints| {
-            joints.insert("l_gripper_r_finger_joint".to_owned(), 0.1);
+            joints.insert("l_gripper_r_finger_joint".into(), 0.1);
         });
         assert!(apart.contains("`l_gripper_r_finger_joint` is 0.1") && apart.contains("at 0"), "{apart}");
     }

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use darrt_geom::{Body, Clearance, Shape, clearance};
+use darrt_geom::{Clearance, Shape, clearance};
 use nalgebra::{Isometry3, Point2, Vector2, Vector3};
 
 use super::options::VerifyOptions;
 use super::refusal::{Refusal, RefusalKind, Site};
 use super::robot::Robot;
-use super::solid::{Solid, exact};
+use super::solid::{Placed, Solid, exact, lower_bound};
 use super::stage::Stage;
 use crate::problem_file::{Object, ShapeSpec};
 
@@ -63,7 +63,7 @@ pub(super) fn check_grip(
 /// A pushed object without its outermost skin: what a pushing finger must not reach.
 #[derive(Debug)]
 pub(super) struct PushCore {
-    core: Body,
+    core: Solid,
     name: String,
 }
 
@@ -82,8 +82,8 @@ impl PushCore {
             ShapeSpec::Capsule { radius, height } => Shape::capsule(radius - skin_m, height / 2.0 - radius),
             _ => return Err(format!("`{name}` is not round and cannot be pushed")),
         };
-        let body = core.and_then(|shape| Body::single(name.as_str(), shape)).map_err(|error| error.to_string())?;
-        Ok(Self { core: body, name })
+        let core = core.and_then(|shape| Solid::new(&Arc::from(name.as_str()), shape));
+        Ok(Self { core: core.map_err(|error| error.to_string())?, name })
     }
 
     /// No finger reaches deeper into the object than its skin. The nearest points of each fingertip and the core, left and
@@ -97,12 +97,19 @@ impl PushCore {
         object: usize,
     ) -> Result<[Option<Clearance>; 2], Refusal> {
         let (_, pose) = stage.object(object);
+        let core = Placed { solid: &self.core, world_from_solid: pose, centre: self.core.world_centre(pose) };
+        let [_, _, left, right] = robot.fingers;
         let mut nearest = [None; 4];
         for (link, nearest) in robot.fingers.into_iter().zip(&mut nearest) {
             for index in robot.solids_of(link) {
                 let (solid, solid_pose) = stage.link_solid(index);
+                // OPTIMIZATION: of what is behind the tips only the depth counts.
+                let placed = || Placed { solid, world_from_solid: solid_pose, centre: solid.world_centre(solid_pose) };
+                if link != left && link != right && lower_bound(&placed(), &core) > 0.0 {
+                    continue;
+                }
                 let refuse = |text: String| site.refusal(time, RefusalKind::Push, text).about(solid.name(), &self.name);
-                let found = clearance::between(&solid.body, solid_pose, &self.core, pose);
+                let found = clearance::between(&solid.body, solid_pose, &self.core.body, pose);
                 let found = found.map_err(|error| refuse(error.to_string()))?;
                 if found.distance <= 0.0 {
                     return Err(refuse(format!("{} presses into {}", solid.name(), self.name)).at(&found.first));

@@ -38,6 +38,8 @@ pub(super) struct Judge<'a> {
     modes: Vec<Mode>,
     /// Poses of all links, overwritten at every state.
     links: Vec<Isometry3<f64>>,
+    /// Where the base is in `links` and on the stage.
+    placed_base: Option<[f64; 3]>,
     waypoints: usize,
 }
 
@@ -87,7 +89,7 @@ impl<'a> Judge<'a> {
         let approach = Approach::new(&robot)
             .ok_or_else(|| Refusal::whole(RefusalKind::Problem, "more joints move than any robot of this kind has"))?;
         let modes = world.movables.iter().map(|m| Mode::Resting { surface: m.start_surface }).collect();
-        Ok(Self { plan, options, cancel, robot, world, stage, approach, modes, links: Vec::new(), waypoints: 0 })
+        Ok(Self { plan, options, cancel, robot, world, stage, approach, modes, links: Vec::new(), placed_base: None, waypoints: 0 })
     }
 
     /// The whole plan.
@@ -127,6 +129,7 @@ impl<'a> Judge<'a> {
         });
         self.robot.link_poses(&state.base, &state.joints, &mut self.links);
         self.stage.place(&self.robot, &self.links, &state.objects, 0, false);
+        self.placed_base = Some(state.base);
         self.stage.check(0, 0.0).map_err(|hit| {
             let words = format!("{} and {} collide", hit.names.0, hit.names.1);
             refuse(RefusalKind::Collision, words).about(&hit.names.0, &hit.names.1).at(&hit.place)
@@ -211,6 +214,7 @@ impl<'a> Judge<'a> {
                 self.links[self.robot.tool]
             };
             line = Some([tool(first), tool(last)]);
+            self.placed_base = None;
         }
         let extents = self.robot.extents(held_m);
         let rates = self.robot.travel_rates(&extents);
@@ -226,7 +230,6 @@ impl<'a> Judge<'a> {
         let mut now = from.clone();
         let mut i = usize::from(!place.is_first());
         let mut gone = 1;
-        let mut is_begun = false;
         while i <= parts {
             let s = i as f64 / parts as f64;
             let time = place.time(s);
@@ -234,9 +237,9 @@ impl<'a> Judge<'a> {
                 return Err(trial.site.refusal(time, RefusalKind::Cancelled, "was being judged when it was cancelled"));
             }
             segment.robot_at(s, &mut now);
-            // OPTIMIZATION: most of the robot stands while it does not drive.
-            let arm_only = is_begun && segment.from.base == segment.to.base;
-            is_begun = true;
+            // OPTIMIZATION: most of the robot stands while it does not drive. Other joints than the arm's have not changed.
+            let arm_only = self.placed_base == Some(now.base);
+            self.placed_base = Some(now.base);
             if arm_only {
                 self.robot.arm_link_poses(&now.joints, &mut self.links);
             } else {

@@ -37,7 +37,7 @@ impl State {
         let mut objects = Vec::with_capacity(world.movables.len());
         for movable in &world.movables {
             let name = &movable.spec.name;
-            let pose = waypoint.objects.get(name).ok_or_else(|| format!("the pose of `{name}` is missing"))?;
+            let pose = waypoint.objects.get(name.as_str()).ok_or_else(|| format!("the pose of `{name}` is missing"))?;
             objects.push(sound(name, *pose)?);
         }
         Ok(Self { base: waypoint.base, joints, objects })

@@ -86,6 +86,20 @@ struct Class {
     travelled_m: f64,
     /// The same in one part of this segment.
     part_m: f64,
+    /// No pair need be looked at before they have moved so far.
+    due_m: f64,
+}
+
+impl Class {
+    /// How far its pairs may have moved before one of them must be looked at, metres. `enough_m`: what a distance must exceed
+    /// to be of no interest; it never grows.
+    fn next_due_m(&self, enough_m: f64) -> f64 {
+        let ahead_m = AHEAD_PARTS * self.part_m + ROUNDING_M;
+        let apart = self.apart.peek().map_or(f64::INFINITY, |due| due.reserve_m - enough_m);
+        let standing = self.standing.peek().map_or(f64::INFINITY, |due| due.reserve_m);
+        let is_still = self.part_m == 0.0 && apart.min(standing) > f64::NEG_INFINITY;
+        if is_still { f64::INFINITY } else { apart.min(standing) - ahead_m }
+    }
 }
 
 impl Ord for Due {
@@ -242,6 +256,7 @@ impl Stage {
     pub(super) fn set_speeds(&mut self, speeds: &Speeds, parts: usize) {
         for class in &mut self.classes {
             class.part_m = speeds.of(class.between) / parts.max(1) as f64;
+            class.due_m = f64::NEG_INFINITY;
         }
     }
 
@@ -287,28 +302,42 @@ impl Stage {
     }
 
     fn check_class(&mut self, class: &mut Class, step: u32, time: f64) -> Result<(), Hit> {
+        // OPTIMIZATION: mostly none is due.
+        if class.travelled_m < class.due_m {
+            return Ok(());
+        }
         for is_standing in [true, false] {
             let pairs = if is_standing { &mut class.standing } else { &mut class.apart };
-            let result = loop {
-                let Some(first) = pairs.peek().copied() else { break Ok(()) };
+            let ahead_m = AHEAD_PARTS * class.part_m;
+            let enough_m = |stage: &Self| if is_standing { 0.0 } else { SOUGHT * stage.nearest_m() };
+            let is_due = |first: &Due, enough_m: f64| {
                 // Looked at before, and neither has moved to the other since.
                 let is_still = class.part_m == 0.0 && first.reserve_m > f64::NEG_INFINITY;
-                let enough_m = if is_standing { 0.0 } else { SOUGHT * self.nearest_m() };
-                let ahead_m = AHEAD_PARTS * class.part_m;
-                if is_still || first.reserve_m - class.travelled_m > enough_m + ahead_m + ROUNDING_M {
-                    break Ok(());
-                }
+                !is_still && first.reserve_m - class.travelled_m <= enough_m + ahead_m + ROUNDING_M
+            };
+            let mut result = Ok(());
+            while let Some(first) = pairs.peek().copied()
+                && let enough_m = enough_m(self)
+                && is_due(&first, enough_m)
+            {
                 pairs.pop();
                 match self.look(first.pair, enough_m + ahead_m, step, time) {
                     Ok(distance_m) => {
                         self.measured.push(Due { reserve_m: class.travelled_m + distance_m, ..first });
                     }
-                    Err(hit) => break Err(hit),
+                    Err(hit) => {
+                        result = Err(hit);
+                        break;
+                    }
                 }
-            };
-            pairs.extend(self.measured.drain(..));
+            }
+            // OPTIMIZATION: mostly none is due, and the heap would be looked through in vain.
+            if !self.measured.is_empty() {
+                pairs.extend(self.measured.drain(..));
+            }
             result?;
         }
+        class.due_m = class.next_due_m(SOUGHT * self.nearest_m());
         Ok(())
     }
 

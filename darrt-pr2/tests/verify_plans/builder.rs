@@ -73,7 +73,7 @@ impl Builder {
         Waypoint {
             base: self.body.base,
             joints: self.table.complete(&self.model.joint_values(&self.body)),
-            objects: BTreeMap::from([(self.object.clone(), Pose::from(self.plate))]),
+            objects: BTreeMap::from([(self.object.as_str().into(), Pose::from(self.plate))]),
         }
     }
 

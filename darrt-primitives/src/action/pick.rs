@@ -11,7 +11,7 @@ use super::retreat::retreat;
 use super::stance::{Probe, Refused, Wanted, at_end, stance};
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
-use crate::grasp::rim::rim_is_graspable;
+use crate::grasp::rim::{rim_is_graspable, rim_overhangs};
 use crate::grasp::{Grasp, GraspKind};
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Held, TouchReason};
@@ -45,13 +45,15 @@ pub fn pick<M: Manipulator>(
     let mut chain = Chain::at(from);
     retreat(m, &mut chain)?;
     let beside = from.mode.engaged_with(object).ok_or(Infeasible::NoGrasp)?;
+    let overhangs = overhangs(m, from, object, movable, pose);
     let mut fitted = 0;
     let mut why = Infeasible::NoGrasp;
     for _ in 0..m.settings().grasp_tries * GRASPS_PER_TRY {
         let Some(family) = movable.grasps.get(rng.random_range(0..movable.grasps.len())) else { continue };
         let mut grasp = family.sample(rng);
         grasp.open_gap_m = grasp.open_gap_m.min(m.manipulator().hand().max_gap_m());
-        if !fits(m, from, object, movable, pose, &grasp) {
+        let is_rim = matches!(grasp.kind, GraspKind::Rim { .. });
+        if (is_rim && !overhangs) || !fits(m, from, object, movable, pose, &grasp) {
             continue;
         }
         let at_grasp = grasp.world_from_tool(pose);
@@ -87,6 +89,20 @@ struct Picking<'a> {
 
 /// How many grasps are drawn for one that is tried: most rim grasps meet the table.
 const GRASPS_PER_TRY: usize = 16;
+
+/// Does the rim stick out anywhere, so that it is worth asking where?
+fn overhangs<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    object: ObjectId,
+    movable: &Movable,
+    pose: &Isometry3<f64>,
+) -> bool {
+    let Some(surface) = from.mode.support_of(object).and_then(|s| m.surface(s)) else { return true };
+    let Some(radius) = movable.round_radius_m else { return false };
+    let center = Point2::new(pose.translation.x, pose.translation.y);
+    rim_overhangs(surface, &center, radius, movable.rim.insertion, movable.rim.clearance)
+}
 
 /// Could the fingers close here, as far as the object and its own support can tell?
 fn fits<M: Manipulator>(

@@ -104,7 +104,7 @@ fn shorten_to_free<M: Manipulator>(
     end: &mut PushEnd,
 ) -> Result<(), Infeasible> {
     let way = Vector3::new(end.direction.x, end.direction.y, 0.0) * end.length;
-    let (free_m, blame) = m.surroundings().free_slide(m.manipulator(), from, object, &way);
+    let (free_m, blame) = m.surroundings().free_slide(from, object, &way);
     if let Some(blame) = blame {
         let length = free_m - STOP_BEFORE_M;
         if length < LEAST_PUSH_M {

@@ -1,5 +1,7 @@
 //! Where the robot stands to bring its hand to a pose: base and arm.
 
+use std::cell::OnceCell;
+
 use darrt_core::domain::Domain;
 use darrt_core::primitive::Infeasible;
 use darrt_core::space::ComponentSpace;
@@ -10,6 +12,7 @@ use rand::{Rng, RngExt};
 
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Mode};
+use crate::surroundings::Hand;
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// How many arm configurations are drawn for one base.
@@ -93,6 +96,8 @@ pub fn at_end<J: Copy>(base: [f64; 3], arms: &[J]) -> Result<Configuration<J>, R
 pub struct Probe<'a, M: Manipulator> {
     m: &'a Tabletop<M>,
     state: TabletopState<M>,
+    /// Found out when it is first asked about.
+    hand: OnceCell<Hand>,
 }
 
 impl<'a, M: Manipulator> Probe<'a, M> {
@@ -100,7 +105,7 @@ impl<'a, M: Manipulator> Probe<'a, M> {
     pub fn new(m: &'a Tabletop<M>, like: &TabletopState<M>, mode: Mode) -> Self {
         let mut state = like.clone();
         state.mode = mode;
-        Self { m, state }
+        Self { m, state, hand: OnceCell::new() }
     }
 
     /// The state asked about last.
@@ -120,7 +125,9 @@ impl<'a, M: Manipulator> Probe<'a, M> {
     /// # Errors
     /// What is in its way.
     pub fn check_hand(&self, world_from_tool: &Isometry3<f64>, contacts: &Contacts) -> Result<(), Blame> {
-        self.m.surroundings().check_hand(self.m.manipulator(), &self.state, world_from_tool, contacts)
+        let around = self.m.surroundings();
+        let hand = self.hand.get_or_init(|| around.hand(self.m.manipulator(), &self.state));
+        around.check_hand(hand, &self.state, world_from_tool, contacts)
     }
 
     /// Is nothing in the way with the robot at `q`, what it holds in its hand?

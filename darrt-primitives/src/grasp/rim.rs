@@ -14,6 +14,9 @@ use super::{Grasp, GraspFamily, GraspKind, Grip, at_least_one, azimuths, radial_
 use crate::error::{PrimitiveError, positive, positive_below, within};
 use crate::push::{Friction, GRAVITY};
 
+/// Slack for plates that stand exactly at the limit, metres.
+const ROUNDING: f64 = 1e-9;
+
 /// The free parameters of a family of rim grasps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RimOptions {
@@ -165,10 +168,20 @@ pub fn rim_is_graspable(
     insertion: f64,
     clearance: f64,
 ) -> bool {
-    /// Slack for plates that stand exactly at the limit.
-    const ROUNDING: f64 = 1e-9;
     fingertip_edge_distance(surface, center, radius, azimuth, insertion, 0.0)
         .is_some_and(|distance| distance >= clearance - ROUNDING)
+}
+
+/// Can [`rim_is_graspable`] say yes for any azimuth? It never does where this says no: the fingertip would have to be
+/// farther from the centre than the nearest edge, by the clearance.
+pub fn rim_overhangs(
+    surface: &SupportSurface,
+    center: &Point2<f64>,
+    radius: f64,
+    insertion: f64,
+    clearance: f64,
+) -> bool {
+    surface.depth(center) <= radius - insertion - clearance + ROUNDING
 }
 
 /// Distance between the segment `a`-`b` and the support, `None` when they touch.

@@ -9,8 +9,8 @@ pub(in crate::plan_file) fn sample() -> PlanFile {
     let joints = ["a_joint", "b_joint", "c_joint", "d_joint", "e_joint", "f_joint"];
     let at = Waypoint {
         base: [-0.8, 0.0, 0.0],
-        joints: joints.into_iter().map(|name| (name.to_owned(), 0.125)).collect(),
-        objects: BTreeMap::from([("plate".to_owned(), pose)]),
+        joints: joints.into_iter().map(|name| (name.into(), 0.125)).collect(),
+        objects: BTreeMap::from([("plate".into(), pose)]),
     };
     let step = Step {
         primitive: PrimitiveName::Pick,

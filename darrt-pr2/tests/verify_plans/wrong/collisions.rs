@@ -60,7 +60,7 @@ fn objects_do_not_run_into_each_other() {
         let pose = Pose { position: [-0.2, y, 0.76], quaternion: [0.0, 0.0, 0.0, 1.0] };
         let waypoints = plan.steps.iter_mut().flat_map(|step| &mut step.waypoints);
         for at in waypoints.chain([&mut plan.start]) {
-            at.objects.insert("saucer".to_owned(), pose);
+            at.objects.insert("saucer".into(), pose);
         }
         plan
     };

@@ -83,14 +83,14 @@ fn waypoints_are_well_formed() {
             at.joints.remove("l_forearm_roll_joint");
         },
         &|at| {
-            at.joints.insert("tail_joint".to_owned(), 0.0);
+            at.joints.insert("tail_joint".into(), 0.0);
         },
         &|at| *joint(at, "r_gripper_r_finger_tip_joint") += 1e-3,
         &|at| *joint(at, "r_elbow_flex_joint") = f64::NAN,
         &|at| at.base[2] = f64::INFINITY,
         &|at| at.objects = BTreeMap::new(),
         &|at| {
-            at.objects.insert("cup".to_owned(), Pose::from(Isometry3::identity()));
+            at.objects.insert("cup".into(), Pose::from(Isometry3::identity()));
         },
         &|at| plate(at).quaternion = [0.0, 0.0, 0.0, 1.01],
     ];
