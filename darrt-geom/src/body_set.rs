@@ -55,6 +55,13 @@ impl BodySet {
         }
     }
 
+    /// Which of the bodies `8 * eight` to `8 * eight + 7` are in the set, as bits.
+    #[inline]
+    pub(crate) fn eight(&self, eight: usize) -> u8 {
+        let word = self.words.get(eight / 8).map_or(0, |word| word >> (eight % 8 * 8));
+        word.to_le_bytes()[0]
+    }
+
     /// Takes a body out.
     pub fn remove(&mut self, body: BodyIndex) {
         if let Some(word) = self.words.get_mut(body.get() / 64) {

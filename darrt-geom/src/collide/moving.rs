@@ -1,7 +1,7 @@
 //! Which pairs of moving bodies may be near each other.
 
 use super::{CollisionModel, Poses, Query};
-use crate::body_set::BodyIndex;
+use crate::body_set::{BodyIndex, BodySet};
 
 impl CollisionModel {
     /// Visits the tested pairs of moving bodies that are asked for and may be near each other, smaller index first, each once,
@@ -17,16 +17,14 @@ impl CollisionModel {
     ) -> Option<T> {
         let moved = query.moved.intersection(&self.moving);
         // The turn of a pair that has moved altogether is that of its smaller index.
-        let is_every = moved == self.moving;
+        let mut is_done = BodySet::EMPTY;
         for body in moved.iter() {
             let registered = &self.bodies[body.get()];
-            let partners = registered.partners.intersection(&self.moving);
-            let first = if is_every { body.get() } else { 0 };
-            let near = poses.balls.near(first, &poses.balls.centre(body.get()), reach(body) + registered.radius);
-            for other in near.intersection(&partners).iter() {
-                let is_done = other < body && moved.contains(other);
-                if !is_done
-                    && Self::asked(query, body, other)
+            let partners = registered.partners.intersection(&self.moving).difference(&is_done);
+            is_done.insert(body);
+            let centre = poses.balls.centre(body.get());
+            for other in poses.balls.near(&partners, &centre, reach(body) + registered.radius).iter() {
+                if Self::asked(query, body, other)
                     && let Some(said) = visit(body.min(other), body.max(other))
                 {
                     return Some(said);
