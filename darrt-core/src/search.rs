@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`Darrt`] | nothing: Algorithm 1 |
 //! | [`connect`] | a second tree grows backwards from the goal |
-//! | [`hierarchical`] | the objects are planned first, as if the robot could pass through everything |
+//! | [`hierarchical`] | the objects are planned first, as if the robot could pass through everything; the parts are either of the above |
 //!
 //! All are a [`Planner`], made by [`Algorithm::planner`], and run by [`solve_with`](crate::solve::solve_with).
 
