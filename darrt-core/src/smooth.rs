@@ -52,8 +52,8 @@ pub fn smooth<D: Domain>(
     if options.attempts == 0 {
         return None;
     }
-    // A shortcut goes the whole way, also where the search takes short steps.
-    let whole = ExtendOptions { step_m: None, ..*extender.options };
+    // A shortcut goes the whole way, also where the search takes short steps; it is judged once it is known to be one.
+    let whole = ExtendOptions { step_m: None, defer: true, ..*extender.options };
     let mut smoother = Smoother {
         extender: Extender { options: &whole, ..*extender },
         start: plan.start(),
@@ -250,7 +250,7 @@ impl<D: Domain> Smoother<'_, D> {
         is_better
     }
 
-    /// All legs, those between the cuts new; `None` if the new ones do not arrive, or travel farther.
+    /// All legs, those between the cuts new; `None` if the new ones do not arrive, or are no shorter.
     fn rewritten(&self, from: Cut, to: Cut, rng: &mut dyn Rng) -> Option<Vec<Leg<D>>> {
         if from.leg > to.leg || (from.leg == to.leg && from.metres >= to.metres) {
             return None;
@@ -266,14 +266,15 @@ impl<D: Domain> Smoother<'_, D> {
         let named = named.filter_map(|id| Some((id, there.object(id)?.clone())));
         let target = PartialState::anywhere(m).with_robot(m, there.robot.clone());
         let target = named.fold(target, |target, (id, at)| target.with_object(id, at));
-        let new = self.way(&here, &target, |state| *state == there || is_end && self.is_goal(state), rng)?;
-        let new: Vec<_> = new.into_iter().map(Leg::of).collect();
-
         let old = self.legs.get(from.leg..to.leg)?;
-        let between_m = length(old) + to.metres - from.metres;
-        if length(&new) > between_m + ROUNDING_M {
-            return None;
-        }
+        let old_m = length(old) + to.metres - from.metres;
+        let arrives = |state: &State<D>| *state == there || is_end && self.is_goal(state);
+        let pays = |steps: &[Step<D>]| {
+            let new_m: f64 = steps.iter().map(|step| step.instance.motion.length() * step.until).sum();
+            new_m < old_m - LEAST_GAIN_M || (steps.len() < old.len() && new_m <= old_m + ROUNDING_M)
+        };
+        let new = self.way(&here, &target, arrives, pays, rng)?.into_iter().map(Leg::of);
+
         // The neighbours may be of the same kind as what is new.
         let first = from.leg.saturating_sub(1);
         let last = to.leg + usize::from(after.is_some());
@@ -294,12 +295,13 @@ impl<D: Domain> Smoother<'_, D> {
         self.extender.problem.goal().is_satisfied(self.extender.problem.domain(), state)
     }
 
-    /// Judged steps from `here` towards `target` up to the first state where `arrives` says so.
+    /// Steps from `here` towards `target`, up to the first state where `arrives` says so; judged if it `pays`.
     fn way(
         &self,
         here: &State<D>,
         target: &PartialState<D>,
         arrives: impl Fn(&State<D>) -> bool,
+        pays: impl Fn(&[Step<D>]) -> bool,
         rng: &mut dyn Rng,
     ) -> Option<Vec<Step<D>>> {
         if arrives(here) {
@@ -308,7 +310,8 @@ impl<D: Domain> Smoother<'_, D> {
         let mut reached = self.extender.extend(here, target, rng).reached;
         let last = reached.iter().position(|reached| arrives(&reached.state))?;
         reached.truncate(last + 1);
-        settle(&self.extender, here, joined(reached), rng).ok()
+        let steps = joined(reached);
+        if pays(&steps) { settle(&self.extender, here, steps, rng).ok() } else { None }
     }
 
     /// The same legs, those of one kind that follow on each other as one.
