@@ -28,7 +28,7 @@ impl Cancel {
 
 /// Limits on one call of [`solve`](crate::solve::solve). `None` means no limit of that kind.
 ///
-/// When time is up, a plan that was found before is still verified; it is not made shorter any more.
+/// When time is up, a plan that was found before is still verified; it is not made shorter or smoother any more.
 #[derive(Debug, Clone, Default)]
 pub struct Budget {
     /// Wall-clock time over all attempts.

@@ -38,6 +38,7 @@ pub mod sample;
 pub mod search;
 pub mod settle;
 pub mod shorten;
+pub mod smooth;
 pub mod solve;
 pub mod space;
 pub mod state;

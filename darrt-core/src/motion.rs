@@ -6,10 +6,12 @@ use crate::domain::Domain;
 use crate::state::{ComponentSet, ObjectId, State};
 
 pub mod reversed;
+pub mod spliced;
 pub mod straight;
 pub mod waypoints;
 
 pub use reversed::Reversed;
+pub use spliced::{Section, Spliced};
 pub use straight::Straight;
 pub use waypoints::Waypoints;
 

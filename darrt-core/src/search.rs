@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`Darrt`] | nothing: Algorithm 1 |
 //! | [`connect`] | a second tree grows backwards from the goal |
-//! | [`hierarchical`] | the objects are planned first, as if the robot could pass through everything |
+//! | [`hierarchical`] | the objects are planned first, as if the robot could pass through everything; the parts are either of the above |
 //!
 //! All are a [`Planner`], made by [`Algorithm::planner`], and run by [`solve_with`](crate::solve::solve_with).
 
@@ -21,6 +21,7 @@ use crate::reroute::Reroute;
 use crate::sample::Sampler;
 use crate::settle::{Unsettled, settle};
 use crate::shorten::{ShortenOptions, shorten};
+use crate::smooth::{SmoothOptions, smooth};
 use crate::state::State;
 use crate::tree::{Edge, NodeId, Tree};
 use crate::validity::Blame;
@@ -48,6 +49,8 @@ pub struct Strategy<D: Domain> {
     pub try_penalty_m: f64,
     /// What is done for a shorter plan once one is found.
     pub shorten: ShortenOptions,
+    /// What is done for less travel once a plan has been verified.
+    pub smooth: SmoothOptions,
 }
 
 impl<D: Domain> std::fmt::Debug for Strategy<D> {
@@ -254,18 +257,23 @@ impl<'p, D: Domain> Darrt<'p, D> {
         self.prove_plan(&Plan::to_node(&self.tree, node).ok_or_else(|| Unproved::Refused(lost()))?)
     }
 
-    /// Has a plan verified, made shorter if it can be, its motions judged if that was put off.
+    /// Has a plan verified, made shorter and smoother if it can be, its motions judged if that was put off.
     fn prove_plan(&self, plan: &Plan<D>) -> Result<Solution<D>, Unproved<D>> {
         let rng = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Shorten);
         let extender = self.extender();
         // A shorter plan that the verifier refuses is no reason to give up the longer one.
-        if let Some(short) = shorten(&extender, plan, self.strategy.shorten, rng)
-            && let Ok(solution) = self.judge(short)
-        {
-            return Ok(solution);
-        }
-        let steps = settle(&extender, plan.start(), plan.steps().iter().cloned(), rng).map_err(Unproved::Unsettled)?;
-        self.judge(Plan::new(plan.start().clone(), steps)).map_err(Unproved::Refused)
+        let short = shorten(&extender, plan, self.strategy.shorten, rng).and_then(|short| self.judge(short).ok());
+        let solution = if let Some(short) = short {
+            short
+        } else {
+            let steps = settle(&extender, plan.start(), plan.steps().iter().cloned(), rng);
+            let steps = steps.map_err(Unproved::Unsettled)?;
+            self.judge(Plan::new(plan.start().clone(), steps)).map_err(Unproved::Refused)?
+        };
+        // Nor is a smoother one, or time that runs out over it.
+        let smooth =
+            smooth(&extender, solution.plan(), self.strategy.smooth, rng).and_then(|plan| self.judge(plan).ok());
+        Ok(smooth.unwrap_or(solution))
     }
 
     fn judge(&self, plan: Plan<D>) -> Result<Solution<D>, Refusal> {

@@ -230,7 +230,7 @@ fn leap<D: Domain>(
 }
 
 /// What an extension reached, the states of one instance as one step.
-fn joined<D: Domain>(reached: Vec<Reached<D>>) -> Vec<Step<D>> {
+pub(crate) fn joined<D: Domain>(reached: Vec<Reached<D>>) -> Vec<Step<D>> {
     let mut steps: Vec<Step<D>> = Vec::new();
     for r in reached {
         match steps.last_mut().filter(|last| Arc::ptr_eq(&last.instance, &r.instance)) {

@@ -8,7 +8,7 @@ use darrt_core::domain::Domain;
 use darrt_core::extend::{ExtendOptions, Extender, extend_towards};
 use darrt_core::laws::planner::{check_accounts, check_cancel};
 use darrt_core::laws::{MotionClaims, check_distance, check_motion, check_planner};
-use darrt_core::motion::{Motion, Reversed};
+use darrt_core::motion::{Instance, Motion, Reversed};
 use darrt_core::observe::{Observer, Silent};
 use darrt_core::partial::PartialState;
 use darrt_core::problem::Problem;
@@ -17,9 +17,13 @@ use darrt_core::sample::{Frontier, GoalBiased, Placed, RobotOrObjects, Sampler};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve, solve_with};
 use darrt_core::space::{ComponentSpace, Place};
-use darrt_core::state::ObjectId;
-use darrt_core::testing::puck::{Carry, Pick, Place as PlaceDown, PuckWorld, Push, Transit, paper_strategy, problems};
+use darrt_core::state::{ComponentSet, ObjectId, State};
+use darrt_core::testing::puck::{
+    Carry, Clearance, Obstacle, Outline, Pick, Place as PlaceDown, PuckWorld, Push, Setup, Transit, paper_strategy,
+    problems,
+};
 use darrt_core::testing::strategies::{config, states, targets};
+use darrt_core::validity::{Blame, FreePrefix, Validity};
 use proptest::prelude::*;
 
 fn options(seed: u64, iterations: u64) -> SolveOptions {
@@ -98,6 +102,39 @@ fn every_search_solves_the_puck_problems_alike_on_any_number_of_threads() {
             assert_eq!(text(&run(&problem, algorithm, Until::Solved, &two)), text(&outcome), "{algorithm} on {name}");
         }
     }
+}
+
+/// Rules of which it is not known what is the robot's.
+struct Told(Clearance);
+
+impl Validity<PuckWorld> for Told {
+    fn check(&self, m: &PuckWorld, state: &State<PuckWorld>, contacts: &ComponentSet) -> Result<(), Blame> {
+        self.0.check(m, state, contacts)
+    }
+
+    fn free_prefix(&self, m: &PuckWorld, instance: &Instance<PuckWorld>, from: &State<PuckWorld>) -> FreePrefix {
+        self.0.free_prefix(m, instance, from)
+    }
+}
+
+/// With rules that can be told apart the objects are planned first; without, a hierarchical search is the one that it is made of.
+#[test]
+fn a_hierarchical_search_needs_rules_that_can_be_told_apart() {
+    let floor =
+        Setup::new([4.0, 3.0], 0.15).robot_at([2.0, 0.5]).puck("red", 0.12, [1.0, 1.5]).puck("blue", 0.12, [3.0, 1.5]);
+    let floor = floor.pillar("pillar", [2.0, 1.5], 0.2).puck_goal(0, [3.0, 2.4]).puck_goal(1, [1.0, 0.6]);
+    let apart = floor.clone().problem().unwrap();
+    let mut parts = floor.parts().unwrap();
+    let pillar = Outline::Disc { centre: [2.0, 1.5], radius_m: 0.2 };
+    parts.validity = Box::new(Told(Clearance::new(vec![Obstacle { name: "pillar".into(), outline: pillar }])));
+    let told = Problem::new(parts).unwrap();
+    let pairs = [(Algorithm::Hierarchical, Algorithm::Darrt), (Algorithm::HierarchicalConnect, Algorithm::Connect)];
+    let run = |problem, algorithm| text(&run(problem, algorithm, Until::Solved, &options(2, 4_000)));
+    for (hierarchical, plain) in pairs {
+        assert_eq!(run(&told, hierarchical), run(&told, plain), "{hierarchical}");
+        assert_ne!(run(&apart, hierarchical), run(&apart, plain), "{hierarchical}");
+    }
+    assert_ne!(run(&apart, Algorithm::Hierarchical), run(&apart, Algorithm::HierarchicalConnect));
 }
 
 #[test]

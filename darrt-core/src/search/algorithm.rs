@@ -60,11 +60,13 @@ pub enum Algorithm {
     Connect,
     /// `DARRTH`: first the objects alone, then the whole from subgoal to subgoal.
     Hierarchical,
+    /// `DARRTHConnect`: the same, from subgoal to subgoal by `DARRTConnect`.
+    HierarchicalConnect,
 }
 
 impl Algorithm {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Darrt, Self::Connect, Self::Hierarchical];
+    pub const ALL: [Self; 4] = [Self::Darrt, Self::Connect, Self::Hierarchical, Self::HierarchicalConnect];
 
     /// Its name in files and options.
     pub fn name(self) -> &'static str {
@@ -72,6 +74,7 @@ impl Algorithm {
             Self::Darrt => "darrt",
             Self::Connect => "connect",
             Self::Hierarchical => "hierarchical",
+            Self::HierarchicalConnect => "hierarchical-connect",
         }
     }
 
@@ -91,6 +94,7 @@ impl Algorithm {
             Self::Darrt => Box::new(Darrt::begin(problem, strategy, start)),
             Self::Connect => Box::new(Connect::new(problem, strategy, start)),
             Self::Hierarchical => Box::new(Hierarchical::new(problem, strategy, start)),
+            Self::HierarchicalConnect => Box::new(Hierarchical::connecting(problem, strategy, start)),
         }
     }
 }

@@ -2,9 +2,9 @@
 //! become subgoals, and the whole is planned from one to the next.
 //!
 //! Needs rules that can be told apart ([`Validity::without_robot`](crate::validity::Validity::without_robot)); without them it
-//! is [`Darrt`]. A subgoal says where the objects that the plan has moved so far stand when one primitive ends and another
+//! is the search that its parts are. A subgoal says where the objects that the plan has moved so far stand when one primitive ends and another
 //! begins. One that is not reached within [`SUBGOAL_ITERATIONS`] is given up, and everything begins anew with other random
-//! numbers.
+//! numbers. The parts are searched by [`Darrt`], or by [`Connect`] (`DARRTHConnect`).
 //!
 //! # Source
 //! The authors' later software: J. Barry, L. Kaelbling, T. Lozano-Pérez, *A hierarchical approach to manipulation with diverse
@@ -14,6 +14,7 @@ use std::sync::Arc;
 
 use rand::Rng;
 
+use super::connect::Connect;
 use super::{Darrt, Planner, Start, Step, Strategy, Unproved};
 use crate::domain::Domain;
 use crate::goal::{Goal, Reach};
@@ -29,17 +30,23 @@ use crate::verify::{Refusal, Solution};
 /// Iterations for the objects alone, and for each subgoal.
 pub const SUBGOAL_ITERATIONS: u64 = 300;
 
+/// A search that is begun for one part.
+type Search<'p, D> = Box<dyn Planner<D> + 'p>;
+
 /// One attempt.
-#[derive(Debug)]
 pub struct Hierarchical<'p, D: Domain> {
-    /// The whole problem; its tree is not grown unless the rules cannot be told apart.
+    /// The whole problem; judges what is put together, its tree is not grown.
     whole: Darrt<'p, D>,
+    /// The search of the whole problem, if the rules cannot be told apart.
+    alone: Option<Search<'p, D>>,
     problem: Problem<D>,
     relaxed: Option<Problem<D>>,
     strategy: &'p Strategy<D>,
     start: Start<'p>,
+    /// How parts are searched.
+    search: fn(&Problem<D>, &'p Strategy<D>, Start<'p>) -> Search<'p, D>,
     /// The search for the objects alone, or from one subgoal to the next.
-    part: Darrt<'p, D>,
+    part: Search<'p, D>,
     /// How many parts have been begun.
     parts: u64,
     /// The subgoals ahead, the next one last; `None` while the objects are planned.
@@ -52,9 +59,40 @@ pub struct Hierarchical<'p, D: Domain> {
     nodes: usize,
 }
 
+// Not derived: that would ask the searches to be printable.
+impl<D: Domain> std::fmt::Debug for Hierarchical<'_, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Hierarchical")
+            .field("whole", &self.whole)
+            .field("parts", &self.parts)
+            .field("ahead", &self.ahead)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'p, D: Domain> Hierarchical<'p, D> {
-    /// Begins with the objects.
+    /// Begins with the objects; all parts are searched by [`Darrt`].
     pub fn new(problem: &Problem<D>, strategy: &'p Strategy<D>, start: Start<'p>) -> Self {
+        let search = |problem: &Problem<D>, strategy: &'p Strategy<D>, start: Start<'p>| -> Search<'p, D> {
+            Box::new(Darrt::begin(problem, strategy, start))
+        };
+        Self::of_parts(problem, strategy, start, search)
+    }
+
+    /// The same with all parts searched by [`Connect`].
+    pub fn connecting(problem: &Problem<D>, strategy: &'p Strategy<D>, start: Start<'p>) -> Self {
+        let search = |problem: &Problem<D>, strategy: &'p Strategy<D>, start: Start<'p>| -> Search<'p, D> {
+            Box::new(Connect::new(problem, strategy, start))
+        };
+        Self::of_parts(problem, strategy, start, search)
+    }
+
+    fn of_parts(
+        problem: &Problem<D>,
+        strategy: &'p Strategy<D>,
+        start: Start<'p>,
+        search: fn(&Problem<D>, &'p Strategy<D>, Start<'p>) -> Search<'p, D>,
+    ) -> Self {
         let relaxed = problem
             .validity()
             .without_robot()
@@ -62,11 +100,13 @@ impl<'p, D: Domain> Hierarchical<'p, D> {
         let first = relaxed.as_ref().unwrap_or(problem);
         Self {
             whole: Darrt::begin(problem, strategy, start),
-            part: part(first, strategy, start, 0),
+            alone: relaxed.is_none().then(|| search(problem, strategy, start)),
+            part: search(first, strategy, start.of_part(0)),
             problem: problem.clone(),
             relaxed,
             strategy,
             start,
+            search,
             parts: 0,
             ahead: None,
             steps: Vec::new(),
@@ -79,11 +119,11 @@ impl<'p, D: Domain> Hierarchical<'p, D> {
     /// Ends the present part and begins one at `problem`.
     fn begin(&mut self, problem: &Problem<D>) {
         self.parts += 1;
-        let next = part(problem, self.strategy, self.start, self.parts);
+        let next = (self.search)(problem, self.strategy, self.start.of_part(self.parts));
         let ended = std::mem::replace(&mut self.part, next);
-        self.accounts.merge(ended.accounts());
+        self.accounts.merge(&ended.accounts());
         self.iterations += ended.iteration();
-        self.nodes = self.nodes.max(ended.tree().len());
+        self.nodes = self.nodes.max(ended.nodes());
     }
 
     fn begin_anew(&mut self) {
@@ -142,10 +182,11 @@ impl<'p, D: Domain> Hierarchical<'p, D> {
     }
 }
 
-/// The search for one part, with random numbers of its own.
-fn part<'p, D: Domain>(problem: &Problem<D>, strategy: &'p Strategy<D>, start: Start<'p>, part: u64) -> Darrt<'p, D> {
-    let seed = stream(start.seed, start.attempt, part, Purpose::Attempt).next_u64();
-    Darrt::begin(problem, strategy, Start { seed, ..start })
+impl Start<'_> {
+    /// Where a part begins, with random numbers of its own.
+    fn of_part(self, part: u64) -> Self {
+        Self { seed: stream(self.seed, self.attempt, part, Purpose::Attempt).next_u64(), ..self }
+    }
 }
 
 /// Where the objects stand that `plan` has moved by then, whenever a run of one primitive ends that has moved any; the last run
@@ -170,14 +211,17 @@ fn subgoals<D: Domain>(m: &D, plan: &Plan<D>) -> Vec<PartialState<D>> {
 
 impl<D: Domain> Planner<D> for Hierarchical<'_, D> {
     fn prove_start(&mut self) -> Option<Result<Solution<D>, Refusal>> {
+        if let Some(alone) = &mut self.alone {
+            return alone.prove_start();
+        }
         let proof = self.whole.prove_start()?;
         self.accounts.refused += u64::from(proof.is_err());
         Some(proof)
     }
 
     fn step(&mut self) -> Step<D> {
-        if self.relaxed.is_none() {
-            return self.whole.step();
+        if let Some(alone) = &mut self.alone {
+            return alone.step();
         }
         let mut step = self.part.step();
         if let Some(reached) = step.solution.take() {
@@ -189,23 +233,23 @@ impl<D: Domain> Planner<D> for Hierarchical<'_, D> {
     }
 
     fn iteration(&self) -> u64 {
-        if self.relaxed.is_none() { self.whole.iteration() } else { self.iterations + self.part.iteration() }
+        self.alone.as_ref().map_or_else(|| self.iterations + self.part.iteration(), |alone| alone.iteration())
     }
 
     fn nodes(&self) -> usize {
-        self.nodes.max(self.part.tree().len()).max(self.whole.tree().len())
+        self.alone.as_ref().map_or_else(|| self.nodes.max(self.part.nodes()), |alone| alone.nodes())
     }
 
     fn accounts(&self) -> Accounts {
-        if self.relaxed.is_none() {
-            return self.whole.accounts().clone();
+        if let Some(alone) = &self.alone {
+            return alone.accounts();
         }
         let mut all = self.accounts.clone();
-        all.merge(self.part.accounts());
+        all.merge(&self.part.accounts());
         all
     }
 
     fn nearest_to_goal(&self) -> f64 {
-        self.whole.nearest_to_goal()
+        self.alone.as_ref().map_or_else(|| self.whole.nearest_to_goal(), |alone| alone.nearest_to_goal())
     }
 }

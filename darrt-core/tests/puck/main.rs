@@ -27,6 +27,8 @@ mod replay;
 #[cfg(test)]
 mod shortened;
 #[cfg(test)]
+mod smoothed;
+#[cfg(test)]
 mod solved;
 #[cfg(test)]
 mod stops;

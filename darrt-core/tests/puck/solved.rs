@@ -64,3 +64,21 @@ fn figure_3_is_not_solved_by_full_samples_but_by_partial_ones() {
         assert_eq!(soon.stop, Stop::Solved, "seed {seed}");
     }
 }
+
+/// Also with eight objects to be moved, and with eight that are in the way of some.
+#[test]
+fn one_to_eight_pucks_change_to_the_other_side() {
+    for (count, moved) in (1..=8).map(|n| (n, n)).chain([(8, 1), (8, 3)]) {
+        let problem = problems::many_pucks(count, moved).unwrap();
+        for seed in 0..3 {
+            let outcome = solve(&problem, &greedy(robot_or_objects()), &options(seed, 6000), &mut Silent);
+            assert_eq!(outcome.stop, Stop::Solved, "{moved} of {count}, seed {seed}");
+            assert!(outcome.accounts.are_balanced(), "{moved} of {count}, seed {seed}");
+            let (m, start) = (problem.domain(), problem.start());
+            let end = outcome.solution.unwrap().plan().end(m);
+            let is_over = |i: &usize| end.objects[*i] != start.objects[*i];
+            assert!((0..usize::from(moved)).all(|i| is_over(&i)), "{moved} of {count}, seed {seed}: {end:?}");
+        }
+    }
+    assert!(problems::many_pucks(9, 1).is_err(), "there is room for eight");
+}

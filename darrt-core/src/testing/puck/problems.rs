@@ -94,6 +94,18 @@ pub fn eight_pucks() -> Ready {
     setup.puck_goal(0, [3.6, 1.5]).problem()
 }
 
+/// Pucks in a column on one side of the floor, of which the first `moved` must get to the other side, each to the row of its
+/// neighbour; the others may be anywhere. The floor is 4 by 6 metres however many there are.
+///
+/// # Errors
+/// If there are more than eight, which do not fit; none in practice for up to eight.
+pub fn many_pucks(count: u8, moved: u8) -> Ready {
+    let row = |i: u8| 0.6 + 0.68 * f64::from(i);
+    let setup = Setup::new([4.0, 6.0], ROBOT_M).robot_at([0.3, 3.0]);
+    let setup = (0..count).fold(setup, |setup, i| setup.puck(&format!("puck {}", i + 1), PUCK_M, [1.2, row(i)]));
+    (0..moved.min(count)).fold(setup, |setup, i| setup.puck_goal(usize::from(i), [2.8, row(i ^ 1)])).problem()
+}
+
 /// A puck in a corner, where it cannot be pushed away from the walls, but can be grabbed.
 ///
 /// # Errors

@@ -1,0 +1,368 @@
+//! Less travel between states that a plan goes through.
+//!
+//! One rewrite does it all: cut the plan at two places, extend from the state at the first to the whole state at the second,
+//! and put what arrives there, bit for bit, in the place of what lay between. Within one attachment that is a shortcut. Between
+//! two moves of one kind it merges them. Where the objects stand at the second cut as at the first it drops a detour, or a
+//! push and the push back. The rest of the plan stays as it is, and at its end only the goal counts.
+//!
+//! What is new is judged like every other motion of the search, so it keeps the same clearance. The verifier judges the whole.
+
+use std::sync::Arc;
+
+use rand::{Rng, RngExt};
+
+use crate::domain::Domain;
+use crate::extend::{ExtendOptions, Extender};
+use crate::motion::{Section, Spliced};
+use crate::partial::PartialState;
+use crate::plan::{Plan, Step};
+use crate::settle::settle;
+use crate::shorten::joined;
+use crate::state::{ComponentId, ComponentSet, ObjectId, State};
+
+/// Metres of travel below which a gain is none.
+const LEAST_GAIN_M: f64 = 1e-6;
+/// Metres of travel that are put down to rounding.
+const ROUNDING_M: f64 = 1e-9;
+/// Steps in which two moves and what they lead to may become one move and that.
+const NEAR: usize = 3;
+
+/// How much effort goes into a smoother plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SmoothOptions {
+    /// How many extensions are made at most; 0: the plan stays as it is.
+    pub attempts: usize,
+}
+
+/// A plan to the goal with fewer steps than `plan` and no more travel, or with less travel and no more steps, if one was
+/// found before the extender is interrupted. Not verified. The motions of `plan` must have been judged.
+///
+/// # Laws
+/// Never more steps, and never more travel but for rounding; pure but for `rng` and the interrupt.
+///
+/// # Source
+/// Geraerts and Overmars, Creating high-quality paths for motion planning, 2007: shortcuts between random states of a path.
+/// Here the shortcut is whatever the primitives propagate, so it may also move objects.
+pub fn smooth<D: Domain>(
+    extender: &Extender<'_, D>,
+    plan: &Plan<D>,
+    options: SmoothOptions,
+    rng: &mut dyn Rng,
+) -> Option<Plan<D>> {
+    if options.attempts == 0 {
+        return None;
+    }
+    // A shortcut goes the whole way, also where the search takes short steps; it is judged once it is known to be one.
+    let whole = ExtendOptions { step_m: None, defer: true, ..*extender.options };
+    let mut smoother = Smoother {
+        extender: Extender { options: &whole, ..*extender },
+        start: plan.start(),
+        legs: plan.steps().iter().map(|step| Leg::of(step.clone())).collect(),
+        left: options.attempts,
+        has_gained: false,
+    };
+    smoother.drop_detours(rng);
+    smoother.cut_corners(rng);
+    let Smoother { legs, has_gained, .. } = smoother;
+    has_gained.then(|| Plan::new(plan.start().clone(), legs.into_iter().map(|leg| leg.step).collect()))
+}
+
+/// A step, and the parts of instances that it is made of.
+struct Leg<D: Domain> {
+    step: Step<D>,
+    sections: Vec<Section<D>>,
+}
+
+impl<D: Domain> Clone for Leg<D> {
+    fn clone(&self) -> Self {
+        Self { step: self.step.clone(), sections: self.sections.clone() }
+    }
+}
+
+impl<D: Domain> Leg<D> {
+    fn of(step: Step<D>) -> Self {
+        let section = Section { instance: Arc::clone(&step.instance), from: 0.0, to: step.until };
+        Self { step, sections: vec![section] }
+    }
+
+    /// The step that runs `sections`, called, touching and moving what `like` does.
+    fn through(sections: Vec<Section<D>>, like: &Step<D>) -> Option<Self> {
+        if let [Section { instance, from: 0.0, to }] = sections.as_slice() {
+            let step = Step { instance: Arc::clone(instance), until: *to, primitive: like.primitive };
+            return Some(Self { step, sections });
+        }
+        let spliced = Spliced::instance(sections.clone(), &like.instance)?;
+        Some(Self { step: Step { instance: Arc::new(spliced), until: 1.0, primitive: like.primitive }, sections })
+    }
+
+    fn length(&self) -> f64 {
+        self.step.instance.motion.length() * self.step.until
+    }
+
+    fn end(&self, m: &D, like: &State<D>) -> State<D> {
+        self.step.instance.at(m, self.step.until, like)
+    }
+
+    /// May it be left, or joined, on the way? A push may not: it is one motion in one direction.
+    fn may_be_cut(&self) -> bool {
+        self.step.instance.reversible
+    }
+
+    /// What it does up to `metres` of its travel, and what then; `None` if that is one of its ends.
+    fn split(&self, metres: f64) -> Option<(Self, Self)> {
+        let mut before = Vec::new();
+        let mut left_m = metres;
+        for (i, section) in self.sections.iter().enumerate() {
+            let length_m = section.length();
+            if left_m >= length_m {
+                left_m -= length_m;
+                before.push(section.clone());
+                continue;
+            }
+            let cut = section.from + (section.to - section.from) * (left_m / length_m);
+            let mut after = Vec::new();
+            if cut > section.from {
+                before.push(Section { to: cut, ..section.clone() });
+            }
+            after.push(Section { from: cut.max(section.from), ..section.clone() });
+            after.extend(self.sections.iter().skip(i + 1).cloned());
+            return Some((Self::through(before, &self.step)?, Self::through(after, &self.step)?));
+        }
+        None
+    }
+}
+
+/// A place on the plan: so many metres behind the beginning of a leg; 0 metres behind the last leg is the end.
+#[derive(Debug, Clone, Copy)]
+struct Cut {
+    leg: usize,
+    metres: f64,
+}
+
+impl Cut {
+    const fn before(leg: usize) -> Self {
+        Self { leg, metres: 0.0 }
+    }
+}
+
+struct Smoother<'a, D: Domain> {
+    extender: Extender<'a, D>,
+    start: &'a State<D>,
+    legs: Vec<Leg<D>>,
+    /// Attempts that are left.
+    left: usize,
+    has_gained: bool,
+}
+
+impl<D: Domain> Smoother<'_, D> {
+    /// Between the ends of steps at which the objects stand alike, or within one transfer; the farthest apart first. Also
+    /// between those so near that a move and what it leads to lie between them.
+    fn drop_detours(&mut self, rng: &mut dyn Rng) {
+        let mut span = self.legs.len();
+        while span >= 2 {
+            let mut first = 0;
+            while first + span <= self.legs.len() {
+                if !self.goes_on() {
+                    return;
+                }
+                let (from, to) = (Cut::before(first), Cut::before(first + span));
+                let stands = self.state_before(from.leg).objects == self.state_before(to.leg).objects;
+                // Behind a push the hand still stands at the object, where nothing but a push leads.
+                let behind = self.free_behind(to);
+                if stands || !self.carried(from, to).is_empty() {
+                    let is_better = self.replace(from, to, rng);
+                    if let Some(behind) = behind.filter(|_| stands && !is_better) {
+                        self.replace(from, behind, rng);
+                    }
+                } else if span == NEAR {
+                    self.replace(from, behind.unwrap_or(to), rng);
+                }
+                first += 1;
+            }
+            span = (span - 1).min(self.legs.len());
+        }
+    }
+
+    /// The middle of the leg behind a cut, if it moves the robot alone.
+    fn free_behind(&self, Cut { leg, .. }: Cut) -> Option<Cut> {
+        let next = self.legs.get(leg).filter(|next| next.may_be_cut() && next.length() > 0.0)?;
+        let is_robot_alone = next.step.instance.moves.is_subset_of(ComponentSet::ROBOT);
+        is_robot_alone.then(|| Cut { leg, metres: next.length() / 2.0 })
+    }
+
+    /// The objects that go along with the robot all the way between two cuts, if all legs there move the same.
+    fn carried(&self, from: Cut, to: Cut) -> Vec<ObjectId> {
+        let end = if to.metres > 0.0 { to.leg + 1 } else { to.leg };
+        let legs = self.legs.get(from.leg..end).unwrap_or_default();
+        let Some(moves) = legs.first().map(|first| first.step.instance.moves) else { return Vec::new() };
+        let is_one_transfer = legs.iter().all(|leg| leg.may_be_cut() && leg.step.instance.moves == moves);
+        let ids = (0..self.start.objects.len()).map(ObjectId::new);
+        ids.filter(|id| is_one_transfer && moves.contains(ComponentId::Object(*id))).collect()
+    }
+
+    /// Between places drawn by travel, near ones more often than far ones.
+    fn cut_corners(&mut self, rng: &mut dyn Rng) {
+        while self.goes_on() {
+            let total_m = length(&self.legs);
+            let from_m = rng.random_range(0.0..1.0) * total_m;
+            let share: f64 = rng.random_range(0.0..1.0);
+            let to_m = from_m + share * share * (total_m - from_m);
+            let [from, to] = [from_m, to_m].map(|metres| self.cut_at(metres, rng));
+            self.replace(from, to, rng);
+        }
+    }
+
+    fn goes_on(&self) -> bool {
+        self.left > 0 && self.extender.interrupt.stop().is_none()
+    }
+
+    /// The place after `metres` of the plan; an end of the step where it may not be cut, and sometimes elsewhere.
+    fn cut_at(&self, metres: f64, rng: &mut dyn Rng) -> Cut {
+        let mut left_m = metres;
+        for (i, leg) in self.legs.iter().enumerate() {
+            let length_m = leg.length();
+            if left_m < length_m {
+                let stays = leg.may_be_cut() && rng.random_bool(0.5);
+                let nearest = Cut::before(if left_m < length_m / 2.0 { i } else { i + 1 });
+                return if stays { Cut { leg: i, metres: left_m } } else { nearest };
+            }
+            left_m -= length_m;
+        }
+        Cut::before(self.legs.len())
+    }
+
+    fn state_before(&self, leg: usize) -> State<D> {
+        let before = leg.checked_sub(1).and_then(|before| self.legs.get(before));
+        before.map_or_else(|| self.start.clone(), |leg| leg.end(self.extender.problem.domain(), self.start))
+    }
+
+    /// One attempt to go another way from `from` to `to`; was it better?
+    fn replace(&mut self, from: Cut, to: Cut, rng: &mut dyn Rng) -> bool {
+        self.left = self.left.saturating_sub(1);
+        let Some(legs) = self.rewritten(from, to, rng) else { return false };
+        let (old, new) = ((self.legs.len(), length(&self.legs)), (legs.len(), length(&legs)));
+        let is_better =
+            if new.0 < old.0 { new.1 <= old.1 + ROUNDING_M } else { new.0 == old.0 && new.1 < old.1 - LEAST_GAIN_M };
+        if is_better {
+            self.legs = legs;
+            self.has_gained = true;
+        }
+        is_better
+    }
+
+    /// All legs, those between the cuts new; `None` if the new ones do not arrive, or are no shorter.
+    fn rewritten(&self, from: Cut, to: Cut, rng: &mut dyn Rng) -> Option<Vec<Leg<D>>> {
+        if from.leg > to.leg || (from.leg == to.leg && from.metres >= to.metres) {
+            return None;
+        }
+        let m = self.extender.problem.domain();
+        let (before, _) = self.parts_of(from);
+        let (until, after) = self.parts_of(to);
+        let here = before.as_ref().map_or_else(|| self.state_before(from.leg), |leg| leg.end(m, self.start));
+        let there = until.as_ref().map_or_else(|| self.state_before(to.leg), |leg| leg.end(m, self.start));
+        let is_end = to.leg >= self.legs.len();
+        // What is carried follows the robot: named, it would be set down.
+        let named = (0..there.objects.len()).map(ObjectId::new).filter(|id| !self.carried(from, to).contains(id));
+        let named = named.filter_map(|id| Some((id, there.object(id)?.clone())));
+        let target = PartialState::anywhere(m).with_robot(m, there.robot.clone());
+        let target = named.fold(target, |target, (id, at)| target.with_object(id, at));
+        let old = self.legs.get(from.leg..to.leg)?;
+        let old_m = length(old) + to.metres - from.metres;
+        let arrives = |state: &State<D>| *state == there || is_end && self.is_goal(state);
+        let pays = |steps: &[Step<D>]| {
+            let new_m: f64 = steps.iter().map(|step| step.instance.motion.length() * step.until).sum();
+            new_m < old_m - LEAST_GAIN_M || (steps.len() < old.len() && new_m <= old_m + ROUNDING_M)
+        };
+        let new = self.way(&here, &target, arrives, pays, rng)?.into_iter().map(Leg::of);
+
+        // The neighbours may be of the same kind as what is new.
+        let first = from.leg.saturating_sub(1);
+        let last = to.leg + usize::from(after.is_some());
+        let behind = (last + 1).min(self.legs.len());
+        let window = self.legs.get(first..from.leg)?.iter().cloned().chain(before).chain(new).chain(after);
+        let window = self.woven(window.chain(self.legs.get(last..behind)?.iter().cloned()));
+        let rest = self.legs.get(behind..)?.iter().cloned();
+        Some(self.legs.get(..first)?.iter().cloned().chain(window).chain(rest).collect())
+    }
+
+    /// What the cut leg does before the cut and after it; `None` for nothing, and for a cut between two legs.
+    fn parts_of(&self, cut: Cut) -> (Option<Leg<D>>, Option<Leg<D>>) {
+        let leg = self.legs.get(cut.leg).filter(|_| cut.metres > 0.0);
+        leg.and_then(|leg| leg.split(cut.metres)).unzip()
+    }
+
+    fn is_goal(&self, state: &State<D>) -> bool {
+        self.extender.problem.goal().is_satisfied(self.extender.problem.domain(), state)
+    }
+
+    /// Steps from `here` towards `target`, up to the first state where `arrives` says so; judged if it `pays`.
+    fn way(
+        &self,
+        here: &State<D>,
+        target: &PartialState<D>,
+        arrives: impl Fn(&State<D>) -> bool,
+        pays: impl Fn(&[Step<D>]) -> bool,
+        rng: &mut dyn Rng,
+    ) -> Option<Vec<Step<D>>> {
+        if arrives(here) {
+            return Some(Vec::new());
+        }
+        let mut reached = self.extender.extend(here, target, rng).reached;
+        let last = reached.iter().position(|reached| arrives(&reached.state))?;
+        reached.truncate(last + 1);
+        let steps = joined(reached);
+        if pays(&steps) { settle(&self.extender, here, steps, rng).ok() } else { None }
+    }
+
+    /// The same legs, those of one kind that follow on each other as one.
+    fn woven(&self, legs: impl Iterator<Item = Leg<D>>) -> Vec<Leg<D>> {
+        let mut woven: Vec<Leg<D>> = Vec::new();
+        for leg in legs {
+            match woven.last().and_then(|last| self.union(last, &leg)) {
+                Some(union) => {
+                    woven.pop();
+                    woven.push(union);
+                }
+                None => woven.push(leg),
+            }
+        }
+        woven
+    }
+
+    /// Both as one, if they are of one kind, in one mode, and free as one.
+    fn union(&self, a: &Leg<D>, b: &Leg<D>) -> Option<Leg<D>> {
+        let m = self.extender.problem.domain();
+        let (p, q) = (&*a.step.instance, &*b.step.instance);
+        let is_one_kind = p.label == q.label && p.moves == q.moves && a.may_be_cut() && b.may_be_cut();
+        let like = touching_more(a, b).filter(|_| is_one_kind)?;
+        let mode_of = |leg: &Leg<D>, share: f64| leg.step.instance.at(m, share * leg.step.until, self.start).mode;
+        let junction = a.end(m, self.start);
+        let is_one_mode = mode_of(a, 0.5) == junction.mode && junction.mode == mode_of(b, 0.5);
+        let begins_there = b.step.instance.at(m, 0.0, self.start) == junction;
+        if !is_one_mode || !begins_there {
+            return None;
+        }
+        let union = Leg::through(a.sections.iter().chain(&b.sections).cloned().collect(), &like.step)?;
+        let from = a.step.instance.at(m, 0.0, self.start);
+        let free = self.extender.problem.validity().free_prefix(m, &union.step.instance, &from);
+        (free.blame.is_none() && free.fraction >= 1.0).then_some(union)
+    }
+}
+
+/// The one that may touch what the other may; `None` if neither is known to.
+fn touching_more<'a, D: Domain>(a: &'a Leg<D>, b: &'a Leg<D>) -> Option<&'a Leg<D>> {
+    let contacts = |leg: &'a Leg<D>| &leg.step.instance.contacts;
+    let nothing = D::Contacts::default();
+    if contacts(a) == contacts(b) || *contacts(a) == nothing {
+        Some(b)
+    } else if *contacts(b) == nothing {
+        Some(a)
+    } else {
+        None
+    }
+}
+
+/// Metres of travel.
+fn length<D: Domain>(legs: &[Leg<D>]) -> f64 {
+    legs.iter().map(Leg::length).sum()
+}
