@@ -31,6 +31,8 @@ use crate::world::{self, Built, World, WorldState};
 const NODE_SPACING: f64 = 1.0;
 /// Extensions that are spent on a shorter plan.
 const SHORTENING: usize = 200;
+/// Share of the samples from a goal for several objects that name only some of them.
+const GOAL_PARTS: f64 = 0.5;
 /// See [`Strategy::try_penalty_m`].
 const TRY_PENALTY: f64 = 0.1;
 
@@ -299,7 +301,7 @@ pub fn strategy(
         DistanceName::Euclidean => Box::new(Euclidean),
         DistanceName::ExactTour => Box::new(ExactTour),
     };
-    let sampler = Box::new(GoalBiased::new(sampler, sampling.goal_bias)?);
+    let sampler = Box::new(GoalBiased::new(sampler, sampling.goal_bias)?.in_part(GOAL_PARTS)?);
     Ok(Strategy {
         sampler,
         distance,

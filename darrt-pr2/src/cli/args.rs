@@ -26,7 +26,7 @@ pub struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  darrt problems                      the built-in problems of the paper
+  darrt problems                      the built-in problems: the paper's, and others
   darrt plan plate3                   solve one; writes plate3.plan.json and plate3.html
   darrt show plate3.plan.json         draw a plan again
   darrt check plate3.plan.json        judge a plan, for example one edited by hand
