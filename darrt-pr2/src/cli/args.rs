@@ -74,7 +74,9 @@ The same problem, seed and options give the same plan file byte for byte, with a
 of threads, as long as the time limit is not what ends the search.
 
 Every attempt ends at a restart; --improve and --search portfolio need them, and begin a new
-attempt after 2000 iterations if neither the problem nor --restart says when.";
+attempt after 2000 iterations if neither the problem nor --restart says when. The share of an
+attempt in --iterations is all that it may use until its restart, also when it needs less.
+After Ctrl-C, --improve gives the best plan so far.";
 
 /// Options of `darrt plan`.
 #[derive(Debug, Args)]
