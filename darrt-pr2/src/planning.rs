@@ -280,7 +280,7 @@ pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer)
     let is_solved = outcome.solution.is_some();
     let plans = if request.improve.is_some() { observer.plans } else { u64::from(is_solved) };
     let times = watch.times(begun, outcome.elapsed, is_solved);
-    Ok(PlanResult { times, plans, ..result(&prepared, request, (sampler, distance), outcome) })
+    Ok(PlanResult { plans, times, ..result(&prepared, request, (sampler, distance), outcome) })
 }
 
 fn result(
