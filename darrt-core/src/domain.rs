@@ -41,6 +41,12 @@ pub trait Domain: Sized + Send + Sync + 'static {
         }
     }
 
+    /// This space for a robot that can pass through everything, for domains whose primitives ask what is in the way;
+    /// `None` if there is no difference. Everything but those answers is the same.
+    fn without_robot(&self) -> Option<Self> {
+        None
+    }
+
     /// Metres the robot's working point must travel from `robot` until it can act on `object` at `at`,
     /// obstacles ignored. Used by the tour distances of paper section 4.3.
     fn reach(&self, robot: &RobotConfig<Self>, object: ObjectId, at: &ObjectConfig<Self>) -> f64;

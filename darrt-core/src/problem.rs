@@ -111,9 +111,10 @@ impl<D: Domain> Problem<D> {
         Self { start, goal, verifier: Arc::new(Unjudged), ..self.clone() }
     }
 
-    /// The same with other rules.
+    /// The same for a robot that can pass through everything, with rules for the objects alone.
     pub(crate) fn under(&self, validity: Arc<dyn Validity<D>>) -> Self {
-        Self { validity, ..self.clone() }
+        let domain = self.domain.without_robot().map_or_else(|| Arc::clone(&self.domain), Arc::new);
+        Self { domain, validity, ..self.clone() }
     }
 
     /// G, to be shared.

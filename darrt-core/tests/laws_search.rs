@@ -118,6 +118,7 @@ mod checks {
         let full = PartialState::anywhere(m).with_robot(m, home(m));
         let goal = Reach::<D>::new(full);
         let biased = GoalBiased::new(RandomSubset, 0.3).unwrap();
+        let in_part = GoalBiased::new(RandomSubset, 0.5).unwrap().in_part(0.5).unwrap();
         let subsets = RobotOrObjects::new(0.5, 0.5).unwrap();
         let boxed: Box<dyn Sampler<D>> = Box::new(RandomSubset);
         let standing = Placed::new(Full, Place::OnSupport, 0.5).unwrap();
@@ -130,7 +131,8 @@ mod checks {
             let at = target.overlay(m, &from);
             frontier.learn_block(m, &at, &target);
         }
-        let all = [&Full as &dyn Sampler<D>, &RandomSubset, &biased, &subsets, &boxed, &standing, &edge, &frontier];
+        let all =
+            [&Full as &dyn Sampler<D>, &RandomSubset, &biased, &in_part, &subsets, &boxed, &standing, &edge, &frontier];
         for sampler in all {
             proptest!(config(48, REGRESSIONS), |(seed in seeds())| {
                 check_sampler(m, sampler, &goal, seed)?;

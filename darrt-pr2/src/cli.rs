@@ -4,7 +4,7 @@
 //!
 //! | question | file |
 //! |---|---|
-//! | which commands and options are there? | [`args`] |
+//! | which commands and options are there? | [`args`], [`choices`] |
 //! | how did it end? | [`exit`] |
 //! | how are texts and files written? | `output` |
 //! | what does each command do? | `plan`, `check`, `problems`, `show`, `schema`, `bench`, `generate` |
@@ -15,6 +15,7 @@ pub mod args;
 mod bench;
 mod bench_table;
 mod check;
+pub mod choices;
 mod diagnosis;
 pub mod exit;
 mod generate;

@@ -14,7 +14,7 @@ use darrt_core::problem::{Parts, Problem};
 use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
-use darrt_core::solve::{Member, Outcome, SolveOptions, Until, solve_with};
+use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
 use darrt_core::verify::{Refusal, Verifier};
 use darrt_primitives::detour::Detour;
 use darrt_primitives::validity::SceneValidity;
@@ -33,6 +33,10 @@ const NODE_SPACING: f64 = 1.0;
 const SHORTENING: usize = 200;
 /// See [`Strategy::try_penalty_m`].
 const TRY_PENALTY: f64 = 0.1;
+/// Share of the samples from a goal for several objects that name only some of them.
+const GOAL_PARTS: f64 = 0.5;
+/// Iterations of an attempt where several are needed and nobody says how long one is; as in the built-in problems.
+const RESTART_ITERATIONS: u64 = 2000;
 
 /// What to plan and how; `None` keeps what the problem file says.
 #[derive(Debug, Clone)]
@@ -53,8 +57,12 @@ pub struct PlanRequest {
     pub sampler: Option<SamplerName>,
     /// Which distance picks the node.
     pub distance: Option<DistanceName>,
-    /// Which search.
-    pub algorithm: Algorithm,
+    /// Which searches; the attempts take them in turn. With several, the attempts are restarted after 2000 iterations if
+    /// nothing says when.
+    pub algorithms: Vec<Algorithm>,
+    /// Go on until the budget ends, and keep the plan that is the cheapest in this; `None`: end with the first plan.
+    /// Attempts are restarted after 2000 iterations if nothing says when.
+    pub improve: Option<Cost>,
     /// Changes the search strategy after all else; `None`: as it is.
     pub adjust: Option<fn(&mut Strategy<World>)>,
 }
@@ -71,7 +79,8 @@ impl PlanRequest {
             restart: None,
             sampler: None,
             distance: None,
-            algorithm: Algorithm::default(),
+            algorithms: vec![Algorithm::default()],
+            improve: None,
             adjust: None,
         }
     }
@@ -84,6 +93,8 @@ pub struct PlanResult {
     pub plan: Option<PlanFile>,
     /// What the verifier saw of that plan.
     pub proof: Option<Proof>,
+    /// How many plans were found, of which it is the cheapest; at most 1 unless plans were to be improved.
+    pub plans: u64,
     /// Why it stopped.
     pub stop: Stop,
     /// Counts per primitive.
@@ -109,6 +120,8 @@ pub struct PlanResult {
 struct FileVerifier {
     exporter: Arc<Exporter>,
     accepted: Accepted,
+    /// Plans that are dearer than another in this are forgotten.
+    improve: Option<Cost>,
     cancel: Cancel,
     watch: Arc<Stopwatch>,
 }
@@ -129,7 +142,7 @@ impl AcceptedPlan {
     }
 }
 
-/// All plans that were accepted: one for each thread that came to one, at most.
+/// The plans that were accepted: one for each thread that came to one, at most; when plans are improved, the cheapest.
 type Accepted = Arc<Mutex<Vec<AcceptedPlan>>>;
 
 impl Verifier<World> for FileVerifier {
@@ -145,13 +158,26 @@ impl Verifier<World> for FileVerifier {
         match self.watch.verification(|| verify_unless(&file, &VerifyOptions::default(), &self.cancel)) {
             Ok(proof) => {
                 if let Ok(mut accepted) = self.accepted.lock() {
-                    accepted.push(AcceptedPlan { plan: plan.clone(), steps: file.steps, proof });
+                    let accept = AcceptedPlan { plan: plan.clone(), steps: file.steps, proof };
+                    keep(&mut accepted, accept, self.improve);
                 }
                 Ok(())
             }
             Err(refusal) => Err(Refusal { step: None, at: 0.0, reason: refusal.to_string() }),
         }
     }
+}
+
+/// Adds a plan, without those that are dearer than another.
+fn keep(accepted: &mut Vec<AcceptedPlan>, plan: AcceptedPlan, improve: Option<Cost>) {
+    if let Some(cost) = improve {
+        let price = cost.of(&plan.plan);
+        accepted.retain(|other| cost.of(&other.plan) <= price);
+        if accepted.iter().any(|other| cost.of(&other.plan) < price) {
+            return;
+        }
+    }
+    accepted.push(plan);
 }
 
 /// A problem ready to be solved.
@@ -177,10 +203,15 @@ pub fn prepare(file: &ProblemFile) -> Result<Prepared, PlanningError> {
 /// # Errors
 /// As [`prepare`].
 pub fn prepare_unless(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, PlanningError> {
-    prepare_watched(file, cancel, &Stopwatch::start())
+    prepare_watched(file, None, cancel, &Stopwatch::start())
 }
 
-fn prepare_watched(file: &ProblemFile, cancel: &Cancel, watch: &Arc<Stopwatch>) -> Result<Prepared, PlanningError> {
+fn prepare_watched(
+    file: &ProblemFile,
+    improve: Option<Cost>,
+    cancel: &Cancel,
+    watch: &Arc<Stopwatch>,
+) -> Result<Prepared, PlanningError> {
     check_companions(file)?;
     crate::goal_means::check_means(file)?;
     let Built { world, start, goal, scene } = world::build(file)?;
@@ -191,6 +222,7 @@ fn prepare_watched(file: &ProblemFile, cancel: &Cancel, watch: &Arc<Stopwatch>) 
     let verifier = FileVerifier {
         exporter: Arc::clone(&exporter),
         accepted: Arc::clone(&accepted),
+        improve,
         cancel: cancel.clone(),
         watch: Arc::clone(watch),
     };
@@ -212,7 +244,7 @@ fn prepare_watched(file: &ProblemFile, cancel: &Cancel, watch: &Arc<Stopwatch>) 
 /// [`PlanningError`] when the problem cannot be planned at all; see [`prepare`].
 pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer) -> Result<PlanResult, PlanningError> {
     let watch = Stopwatch::start();
-    let prepared = prepare_watched(&request.problem, cancel, &watch)?;
+    let prepared = prepare_watched(&request.problem, request.improve, cancel, &watch)?;
     let (sampler, distance) = chosen(request);
     let mut strategy = strategy(&request.problem.sampling, sampler, distance)?;
     if let Some(adjust) = request.adjust {
@@ -220,6 +252,9 @@ pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer)
     }
     strategy.reroute = strategy.reroute.map(|part| Box::new(Timed { part, watch: Arc::clone(&watch) }) as _);
     let budget = &request.problem.budget;
+    let needs_restarts = request.improve.is_some() || request.algorithms.len() > 1;
+    let restart_iterations =
+        request.restart.or(budget.restart_iterations).or(needs_restarts.then_some(RESTART_ITERATIONS));
     let seconds = Duration::try_from_secs_f64(budget.time_limit_s).ok();
     let options = SolveOptions {
         seed: request.seed,
@@ -229,15 +264,23 @@ pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer)
             nodes: budget.nodes.and_then(|n| usize::try_from(n).ok()),
             cancel: cancel.clone(),
         },
-        restart_iterations: request.restart.or(budget.restart_iterations),
+        restart_iterations,
         threads: request.threads,
     };
+    if request.improve.is_some() && options.budget.time.is_none() && options.budget.iterations.is_none() {
+        return Err(PlanningError::NoLimit);
+    }
     let begun = watch.elapsed();
-    let observer = &mut Watched { observer, watch: Arc::clone(&watch) };
-    let members = [Member { algorithm: request.algorithm, strategy: &strategy }];
-    let outcome = solve_with(&prepared.problem, &members, Until::Solved, &options, observer);
-    let times = watch.times(begun, outcome.elapsed, outcome.solution.is_some());
-    Ok(PlanResult { times, ..result(&prepared, request, (sampler, distance), outcome) })
+    let observer = &mut Watched { observer, watch: Arc::clone(&watch), plans: 0 };
+    let strategy = &strategy;
+    let members: Vec<_> =
+        request.algorithms.iter().map(|algorithm| Member { algorithm: *algorithm, strategy }).collect();
+    let until = request.improve.map_or(Until::Solved, Until::BudgetEnds);
+    let outcome = solve_with(&prepared.problem, &members, until, &options, observer);
+    let is_solved = outcome.solution.is_some();
+    let plans = if request.improve.is_some() { observer.plans } else { u64::from(is_solved) };
+    let times = watch.times(begun, outcome.elapsed, is_solved);
+    Ok(PlanResult { plans, times, ..result(&prepared, request, (sampler, distance), outcome) })
 }
 
 fn result(
@@ -263,6 +306,7 @@ fn result(
     PlanResult {
         plan,
         proof,
+        plans: 0,
         stop: outcome.stop,
         accounts: outcome.accounts,
         iterations: outcome.iterations,
@@ -299,7 +343,7 @@ pub fn strategy(
         DistanceName::Euclidean => Box::new(Euclidean),
         DistanceName::ExactTour => Box::new(ExactTour),
     };
-    let sampler = Box::new(GoalBiased::new(sampler, sampling.goal_bias)?);
+    let sampler = Box::new(GoalBiased::new(sampler, sampling.goal_bias)?.in_part(GOAL_PARTS)?);
     Ok(Strategy {
         sampler,
         distance,
@@ -331,3 +375,6 @@ fn check_companions(file: &ProblemFile) -> Result<(), PlanningError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

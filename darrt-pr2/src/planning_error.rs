@@ -72,6 +72,9 @@ pub enum PlanningError {
         /// What each of its goals lacks.
         why: String,
     },
+    /// Plans shall be improved without an end.
+    #[error("plans can only be improved within a limit: give a time limit or a number of iterations")]
+    NoLimit,
     /// A primitive needs another one that the problem leaves out.
     #[error("`{primitive}` is allowed but not `{needs}`, which it is made of")]
     MissingPrimitive {

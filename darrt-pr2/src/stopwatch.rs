@@ -39,7 +39,7 @@ pub struct Times {
     /// From the beginning of the search to the plan that was accepted in the end, before it was made shorter and
     /// verified; `None` if none was.
     pub first_plan_s: Option<f64>,
-    /// Making that plan shorter.
+    /// Making that plan shorter; when plans are improved, the whole search after the first one.
     pub shortening_s: f64,
     /// In the verifier, refused plans included.
     pub verification_s: f64,
@@ -214,10 +214,12 @@ impl<G: Goal<World>> Goal<World> for Timed<G> {
     }
 }
 
-/// Hands on what happens; after a refusal the next plan counts as the first.
+/// Hands on what happens and counts the plans; after a refusal the next plan counts as the first.
 pub(crate) struct Watched<'a> {
     pub(crate) observer: &'a mut dyn Observer,
     pub(crate) watch: Arc<Stopwatch>,
+    /// Plans found.
+    pub(crate) plans: u64,
 }
 
 impl Observer for Watched<'_> {
@@ -225,6 +227,7 @@ impl Observer for Watched<'_> {
         if matches!(event, Event::Refused { .. }) {
             self.watch.with(|sums| sums.hit = None);
         }
+        self.plans += u64::from(matches!(event, Event::Solved { .. }));
         self.observer.on_event(event)
     }
 }
@@ -254,7 +257,7 @@ mod tests {
     #[test]
     fn a_refused_plan_is_not_the_first() {
         let watch = Stopwatch::start();
-        let mut observer = Watched { observer: &mut Silent, watch: Arc::clone(&watch) };
+        let mut observer = Watched { observer: &mut Silent, watch: Arc::clone(&watch), plans: 0 };
         let first_plan = || watch.times(Duration::ZERO, watch.elapsed(), true).first_plan_s;
         watch.note_goal_reached();
         let before = first_plan().unwrap();

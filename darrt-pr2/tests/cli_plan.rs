@@ -78,6 +78,31 @@ fn one_seed_gives_one_file() {
 }
 
 #[test]
+fn every_search_solves_the_bowl_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    for search in ["darrt", "connect", "hierarchical", "portfolio"] {
+        let (printed, _) = run(folder.path(), &["plan", "bowl", "--search", search, "--no-picture"], 0);
+        assert!(printed.contains("bowl: solved in") && printed.contains("verified: "), "{search}: {printed}");
+    }
+}
+
+#[test]
+fn improved_plans_are_counted_and_the_same_on_any_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    // The time limit is only there to end the test if something is wrong.
+    let common = ["--improve", "steps", "--iterations", "600", "--restart", "100", "--time-limit", "600"];
+    for (search, threads) in [("darrt", "1"), ("darrt", "3"), ("portfolio", "1"), ("portfolio", "3")] {
+        let name = format!("{search}-{threads}.json");
+        let own = ["plan", "bowl", "--search", search, "--threads", threads, "-o", &name, "--no-picture"];
+        let (printed, _) = run(folder.path(), &[&own[..], &common].concat(), 0);
+        assert!(printed.contains("bowl: the best of ") && printed.contains(" plans in "), "{printed}");
+    }
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(read("darrt-1.json"), read("darrt-3.json"));
+    assert_eq!(read("portfolio-1.json"), read("portfolio-3.json"));
+}
+
+#[test]
 fn an_edited_plan_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     solved_problem(folder.path());

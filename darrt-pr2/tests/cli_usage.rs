@@ -40,7 +40,17 @@ fn help_teaches_commands_options_and_exit_codes() {
         assert!(stdout(&help).contains(word), "{word}");
     }
     let help = stdout(&darrt(folder.path(), &["plan", "--help"]));
-    for word in ["--seed", "--time-limit", "--iterations", "--restart", "--sampler", "--distance", "--threads"] {
+    for word in [
+        "--seed",
+        "--time-limit",
+        "--iterations",
+        "--restart",
+        "--sampler",
+        "--distance",
+        "--search",
+        "--improve",
+        "--threads",
+    ] {
         assert!(help.contains(word), "{word}");
     }
     assert!(stdout(&darrt(folder.path(), &["--version"])).starts_with("darrt "));
@@ -60,6 +70,9 @@ fn bad_usage_is_one_message_and_exit_code_2() {
         &["plan", "plate1", "--restart", "0"],
         &["plan", "plate1", "--threads", "0"],
         &["plan", "plate1", "--sampler", "some"],
+        &["plan", "plate1", "--search", "both"],
+        &["plan", "plate1", "--improve"],
+        &["plan", "plate1", "--improve", "time"],
         &["plan", "plate1", "--picture", "a.svg", "--no-picture"],
         &["schema", "robot"],
     ] {
@@ -90,9 +103,10 @@ fn bad_numbers_are_answered_with_their_bound() {
 
 #[test]
 fn problems_are_listed_and_printed_to_be_copied() {
+    use darrt_pr2::problem_file::{builtin_names, further_names};
     let folder = tempfile::tempdir().unwrap();
     let list = stdout(&darrt(folder.path(), &["problems"]));
-    for name in darrt_pr2::problem_file::builtin_names() {
+    for name in builtin_names().into_iter().chain(further_names()) {
         assert!(list.contains(name), "{name}");
         let text = stdout(&darrt(folder.path(), &["problems", "--print", name]));
         assert_eq!(text, darrt_pr2::problem_file::builtin_text(name).unwrap());

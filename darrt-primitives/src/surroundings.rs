@@ -133,6 +133,25 @@ impl Surroundings {
         })
     }
 
+    /// The same for the objects alone: no pair with a link is tested, as if the robot could pass through everything.
+    #[must_use]
+    pub fn without_robot(&self) -> Self {
+        Self {
+            model: self.model.without_pairs_of(&self.all_links),
+            strictness: self.strictness,
+            links: self.links.clone(),
+            objects: self.objects.clone(),
+            fingers: self.fingers.clone(),
+            supports: self.supports.clone(),
+            base_links: self.base_links,
+            arm_links: self.arm_links,
+            hand_links: self.hand_links,
+            finger_links: self.finger_links,
+            all_links: self.all_links,
+            workers: Mutex::new(Vec::new()),
+        }
+    }
+
     /// The collision model, for reports.
     pub fn model(&self) -> &CollisionModel {
         &self.model

@@ -121,7 +121,7 @@ pub struct Tabletop<M: Manipulator> {
     manipulator: Arc<M>,
     robot: ArmSpace<M::Joints>,
     objects: Vec<ObjectSpace>,
-    movables: Vec<Movable>,
+    movables: Arc<[Movable]>,
     supports: Vec<Support>,
     settings: ActionSettings<M::Joints>,
     surroundings: Arc<Surroundings>,
@@ -146,6 +146,7 @@ impl<M: Manipulator> Tabletop<M> {
         let (objects, movables): (_, Vec<Movable>) = objects.into_iter().unzip();
         let surroundings = Surroundings::new(&*manipulator, &movables, &supports, fixed, Strictness::default())?;
         let surroundings = Arc::new(surroundings);
+        let movables = movables.into();
         Ok(Self { manipulator, robot, objects, movables, supports, settings, surroundings })
     }
 
@@ -230,6 +231,18 @@ impl<M: Manipulator> Domain for Tabletop<M> {
                 None => Cow::Owned(format!("object {}", id.index())),
             },
         }
+    }
+
+    fn without_robot(&self) -> Option<Self> {
+        Some(Self {
+            manipulator: Arc::clone(&self.manipulator),
+            robot: self.robot.clone(),
+            objects: self.objects.clone(),
+            movables: Arc::clone(&self.movables),
+            supports: self.supports.clone(),
+            settings: self.settings.clone(),
+            surroundings: Arc::new(self.surroundings.without_robot()),
+        })
     }
 
     fn reach(&self, robot: &Configuration<M::Joints>, _: ObjectId, at: &Isometry3<f64>) -> f64 {

@@ -30,12 +30,14 @@ use crate::tabletop::{Tabletop, TabletopState};
 #[derive(Debug, Clone)]
 pub struct SceneValidity {
     surroundings: Arc<Surroundings>,
+    /// The robot can pass through everything and has no limits.
+    ignores_robot: bool,
 }
 
 impl SceneValidity {
     /// The check for domain `m`.
     pub fn new<M: Manipulator>(m: &Tabletop<M>) -> Self {
-        Self { surroundings: Arc::clone(m.surroundings()) }
+        Self { surroundings: Arc::clone(m.surroundings()), ignores_robot: false }
     }
 
     /// The collision model, for reports.
@@ -44,7 +46,10 @@ impl SceneValidity {
     }
 
     /// Joint limits and the bounds of the base.
-    fn check_limits<M: Manipulator>(m: &Tabletop<M>, state: &TabletopState<M>) -> Result<(), Blame> {
+    fn check_limits<M: Manipulator>(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> Result<(), Blame> {
+        if self.ignores_robot {
+            return Ok(());
+        }
         let [x, y, _] = state.robot.base;
         if let Some((joint, value)) = m.robot().first_outside(&state.robot.arm) {
             let bound =
@@ -65,8 +70,8 @@ impl SceneValidity {
     }
 
     /// Limits and supports: everything that needs no geometry of bodies.
-    fn check_rules<M: Manipulator>(m: &Tabletop<M>, state: &TabletopState<M>) -> Result<(), Blame> {
-        Self::check_limits(m, state)?;
+    fn check_rules<M: Manipulator>(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> Result<(), Blame> {
+        self.check_limits(m, state)?;
         for (i, pose) in state.objects.iter().enumerate() {
             let id = ObjectId::new(i);
             Self::check_object(m, state, id, pose)?;
@@ -155,7 +160,7 @@ impl SceneValidity {
             instance.motion.at_into(m, end, &mut next);
             next.mode.clone_from(&here.mode);
             // Limits and bounds are convex: what holds at both ends of a leg holds between them.
-            if let Err(blame) = Self::check_limits(m, &next) {
+            if let Err(blame) = self.check_limits(m, &next) {
                 return FreePrefix::blocked(t, blame);
             }
             let leg = Leg::new(m, &here, &next, (t, end), worker);
@@ -215,8 +220,12 @@ impl SceneValidity {
 
 impl<M: Manipulator> Validity<Tabletop<M>> for SceneValidity {
     fn check(&self, m: &Tabletop<M>, state: &TabletopState<M>, contacts: &Contacts) -> Result<(), Blame> {
-        Self::check_rules(m, state)?;
+        self.check_rules(m, state)?;
         self.surroundings.check_on_the_way(m.manipulator(), state, contacts)
+    }
+
+    fn without_robot(&self) -> Option<Arc<dyn Validity<Tabletop<M>>>> {
+        Some(Arc::new(Self { surroundings: Arc::new(self.surroundings.without_robot()), ignores_robot: true }))
     }
 
     fn free_prefix(&self, m: &Tabletop<M>, instance: &Instance<Tabletop<M>>, from: &TabletopState<M>) -> FreePrefix {

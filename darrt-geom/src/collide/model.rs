@@ -137,6 +137,19 @@ impl CollisionModelBuilder {
 }
 
 impl CollisionModel {
+    /// The same bodies, but no pair is tested that has one of these.
+    #[must_use]
+    pub fn without_pairs_of(&self, bodies: &BodySet) -> Self {
+        let mut model = self.clone();
+        for (index, registered) in self.indices().zip(&mut model.bodies) {
+            let is_left_out = bodies.contains(index);
+            let kept = if is_left_out { BodySet::EMPTY } else { registered.partners.difference(bodies) };
+            registered.partners = kept;
+        }
+        model.moving_pairs.retain(|(a, b)| !bodies.contains(*a) && !bodies.contains(*b));
+        model
+    }
+
     /// Places the fixed bodies and fills the batch.
     fn place_fixed(&mut self, indices: &[BodyIndex]) {
         let mut poses = self.initial.clone();

@@ -32,7 +32,7 @@ use axis::LogAxis;
 /// Colours of variants; with more variants they come again, dashed.
 const COLOURS: [&str; 8] = ["#2148d8", "#e8590c", "#149a3e", "#c01fc0", "#b98900", "#0891b2", "#b91c1c", "#6b7280"];
 /// Lines of variants, one after each round of colours.
-const DASHES: [&str; 3] = ["", "6 3", "2 3"];
+const DASHES: [&str; 4] = ["", "6 3", "2 3", "8 3 2 3"];
 
 /// How variants look.
 #[derive(Debug, Clone)]

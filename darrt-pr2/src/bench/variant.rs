@@ -34,7 +34,7 @@ pub struct Variant {
 }
 
 /// All variants; the first is the planner as it is. A new variant is one line here.
-pub const VARIANTS: [Variant; 24] = [
+pub const VARIANTS: [Variant; 25] = [
     variant("default", "as the problem says", |_| {}),
     variant("robot-or-objects", "samples name the robot or the objects", |r| {
         r.sampler = Some(SamplerName::RobotOrObjects);
@@ -95,7 +95,12 @@ pub const VARIANTS: [Variant; 24] = [
     variant("maximum", "distance: the longest way of all", |r| {
         r.adjust = Some(|s| remeasure(s, || Weighted::maximum(1.0, 1.0)));
     }),
-    variant("connect", "DARRTConnect: a second tree from the goal", |r| r.algorithm = Algorithm::Connect),
+    variant("connect", "DARRTConnect: a second tree from the goal", |r| {
+        r.algorithms = vec![Algorithm::Connect];
+    }),
+    variant("hierarchical", "DARRTH: the objects first, then the whole from subgoal to subgoal", |r| {
+        r.algorithms = vec![Algorithm::Hierarchical];
+    }),
     variant("no-restarts", "one tree until the end", |r| r.problem.budget.restart_iterations = None),
     variant("restart-300", "a new tree every 300 iterations", |r| r.restart = Some(300)),
     variant("paper", "Algorithm 1 as printed: straight lines, plain arg min, fine steps, no shortening", |r| {

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::choices::{DistanceChoice, ImproveChoice, SamplerChoice, SearchChoice};
 use crate::bench::Shard;
-use crate::problem_file::{DistanceName, SamplerName};
 
 /// Most attempts at the same time.
 const MOST_THREADS: u64 = 256;
@@ -26,7 +26,7 @@ pub struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  darrt problems                      the built-in problems of the paper
+  darrt problems                      the built-in problems: the paper's, and others
   darrt plan plate3                   solve one; writes plate3.plan.json and plate3.html
   darrt show plate3.plan.json         draw a plan again
   darrt check plate3.plan.json        judge a plan, for example one edited by hand
@@ -67,10 +67,16 @@ Examples:
   darrt plan plate3 --seed 7 -o p.json              another random seed, another file
   darrt plan plate3 --iterations 20000 --restart 5000 --time-limit 3600
                                                     limited by work, not by the clock
+  darrt plan plate3 --improve steps --time-limit 30 the plan with the fewest steps that is found in 30 s
   darrt plan mine.toml --stats                      see where the attempts end
 
 The same problem, seed and options give the same plan file byte for byte, with any number
-of threads, as long as the time limit is not what ends the search.";
+of threads, as long as the time limit is not what ends the search.
+
+Every attempt ends at a restart; --improve and --search portfolio need them, and begin a new
+attempt after 2000 iterations if neither the problem nor --restart says when. The share of an
+attempt in --iterations is all that it may use until its restart, also when it needs less.
+After Ctrl-C, --improve gives the best plan so far.";
 
 /// Options of `darrt plan`.
 #[derive(Debug, Args)]
@@ -96,6 +102,12 @@ pub struct PlanOptions {
     /// What makes a state of the tree the nearest one [default: as the problem says]
     #[arg(long, value_enum)]
     pub distance: Option<DistanceChoice>,
+    /// Which search; the attempts of `portfolio` take all of them in turn
+    #[arg(long, value_enum, default_value_t = SearchChoice::Darrt)]
+    pub search: SearchChoice,
+    /// Go on until the limit, and keep the plan with the fewest steps or the shortest travel
+    #[arg(long, value_enum, value_name = "COST")]
+    pub improve: Option<ImproveChoice>,
     /// Attempts that run at the same time, 1 to 256; helps only with restarts
     #[arg(long, default_value_t = 1, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
     pub threads: usize,
@@ -251,48 +263,6 @@ pub enum SchemaKind {
     Plan,
 }
 
-/// The samplers, as the command line spells them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum SamplerChoice {
-    /// Either the robot or the objects (the paper)
-    RobotOrObjects,
-    /// A random subset of all that moves
-    RandomSubset,
-    /// All that moves
-    Full,
-}
-
-impl From<SamplerChoice> for SamplerName {
-    fn from(choice: SamplerChoice) -> Self {
-        match choice {
-            SamplerChoice::RobotOrObjects => Self::RobotOrObjects,
-            SamplerChoice::RandomSubset => Self::RandomSubset,
-            SamplerChoice::Full => Self::Full,
-        }
-    }
-}
-
-/// The distances, as the command line spells them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum DistanceChoice {
-    /// The robot visits the objects, nearest first (the paper)
-    Greedy,
-    /// The sum of all ways
-    Euclidean,
-    /// The robot visits the objects in the best order
-    ExactTour,
-}
-
-impl From<DistanceChoice> for DistanceName {
-    fn from(choice: DistanceChoice) -> Self {
-        match choice {
-            DistanceChoice::Greedy => Self::Greedy,
-            DistanceChoice::Euclidean => Self::Euclidean,
-            DistanceChoice::ExactTour => Self::ExactTour,
-        }
-    }
-}
-
 /// A whole number from `least` to `most`, in a message that says so whatever is wrong.
 // What looks like an option, such as `-1`, is let through to here: the parser's own answer would be about options.
 fn whole(text: &str, least: u64, most: u64) -> Result<u64, String> {
@@ -364,18 +334,6 @@ mod tests {
         assert_eq!((seeds("3"), seeds("5..9")), (Ok(0..3), Ok(5..9)));
         for bad in ["0", "5..5", "9..5", "a..b", "-1..2", "1..=3", ""] {
             assert!(seeds(bad).is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn choices_are_spelled_as_in_problem_files() {
-        for choice in SamplerChoice::value_variants() {
-            let name = serde_json::to_value(SamplerName::from(*choice)).unwrap();
-            assert_eq!(name, choice.to_possible_value().unwrap().get_name());
-        }
-        for choice in DistanceChoice::value_variants() {
-            let name = serde_json::to_value(DistanceName::from(*choice)).unwrap();
-            assert_eq!(name, choice.to_possible_value().unwrap().get_name());
         }
     }
 }

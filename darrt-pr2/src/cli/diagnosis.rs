@@ -88,6 +88,7 @@ mod tests {
         let result = PlanResult {
             proof: None,
             plan: None,
+            plans: 0,
             stop: Stop::TimeLimit,
             accounts,
             iterations: 4,

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use darrt_core::budget::{Cancel, Stop};
-use darrt_core::search::Algorithm;
 
 use super::args::PlanOptions;
 use super::exit::{Exit, Failure};
@@ -57,7 +56,8 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
         restart: options.restart,
         sampler: options.sampler.map(Into::into),
         distance: options.distance.map(Into::into),
-        algorithm: Algorithm::default(),
+        algorithms: options.search.algorithms(),
+        improve: options.improve.map(Into::into),
         adjust: None,
     }
 }
@@ -84,8 +84,12 @@ fn failed(request: &PlanRequest, result: &PlanResult) -> Failure {
 }
 
 fn summary(request: &PlanRequest, result: &PlanResult) -> String {
+    let solved = match request.improve {
+        Some(_) => format!("the best of {} in", counted(result.plans, "plan")),
+        None => "solved in".to_owned(),
+    };
     format!(
-        "{}: solved in {:.1} s (seed {}, {}, {}, largest tree {})",
+        "{}: {solved} {:.1} s (seed {}, {}, {}, largest tree {})",
         request.problem.name,
         result.elapsed.as_secs_f64(),
         request.seed,

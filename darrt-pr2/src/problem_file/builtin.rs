@@ -14,14 +14,17 @@ const PROBLEMS: [(&str, &str); 6] = [
     ("plate3", include_str!("../../scenes/plate3.toml")),
 ];
 
-/// Problems on which other planners have been measured.
-const FURTHER: [(&str, &str); 2] = [
+/// Problems on which other planners have been measured, and larger ones of the paper's kind.
+const FURTHER: [(&str, &str); 5] = [
     ("two-tables", include_str!("../../scenes/two-tables.toml")),
     ("two-tables-cups", include_str!("../../scenes/two-tables-cups.toml")),
+    ("plate-and-bowl", include_str!("../../scenes/plate-and-bowl.toml")),
+    ("plate-and-two-bowls", include_str!("../../scenes/plate-and-two-bowls.toml")),
+    ("bowl-in-the-way", include_str!("../../scenes/bowl-in-the-way.toml")),
 ];
 
 /// The names of the embedded problems that are not the paper's, from easy to hard.
-pub fn further_names() -> [&'static str; 2] {
+pub fn further_names() -> [&'static str; 5] {
     FURTHER.map(|(name, _)| name)
 }
 

@@ -268,3 +268,48 @@ proptest::proptest! {
         proptest::prop_assert_eq!(back.robot.base[2].to_bits(), bits.to_bits());
     }
 }
+
+#[test]
+fn further_problems_are_valid_and_bear_their_names() {
+    for name in further_names() {
+        assert_eq!(problem(name).name, name);
+    }
+}
+
+#[test]
+fn larger_problems_have_more_objects_and_room_for_each() {
+    for (name, objects, goals) in [("plate-and-bowl", 2, 2), ("plate-and-two-bowls", 3, 3), ("bowl-in-the-way", 2, 1)] {
+        let problem = problem(name);
+        assert_eq!((problem.objects.len(), problem.goal.objects.len()), (objects, goals), "{name}");
+        assert_eq!((&problem.primitives, problem.paper), (&PrimitiveName::ALL.to_vec(), None), "{name}");
+        let radius = |i: usize| problem.objects[i].shape.round_radius().unwrap();
+        let place = |i: usize| {
+            let goal = problem.goal.objects.iter().find(|goal| goal.object == problem.objects[i].name);
+            let (on, at) = goal.map(|goal| (goal.on.clone().unwrap(), goal.at.unwrap()))?;
+            Some((on, at))
+        };
+        let start = |i: usize| Some((problem.objects[i].on.clone(), problem.objects[i].at));
+        for i in 0..objects {
+            for j in 0..i {
+                for (a, b) in [(start(i), start(j)), (place(i), place(j))] {
+                    let (Some((a_on, a)), Some((b_on, b))) = (a, b) else { continue };
+                    let gap = (a[0] - b[0]).hypot(a[1] - b[1]) - radius(i) - radius(j);
+                    assert!(a_on != b_on || gap > 0.03, "{name}: {gap}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bowl_stands_where_the_plate_must_go() {
+    let problem = problem("bowl-in-the-way");
+    let (goal, [plate, bowl]) = (only_goal(&problem), &problem.objects[..]) else { panic!("not two objects") };
+    assert_eq!((goal.object.as_str(), bowl.name.as_str()), ("plate", "bowl"));
+    assert_eq!(goal.on.as_deref(), Some(bowl.on.as_str()));
+    let [x, y] = goal.at.unwrap();
+    let apart = (x - bowl.at[0]).hypot(y - bowl.at[1]);
+    let least = plate.shape.round_radius().unwrap() + bowl.shape.round_radius().unwrap();
+    assert!(apart + goal.tolerance_m < least, "wherever the goal lets the plate lie, the bowl is in its way");
+    assert!(!bowl.pushable() && bowl.grasps == [GraspFamily::Overhead], "it cannot be pushed aside");
+}

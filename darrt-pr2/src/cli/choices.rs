@@ -1,0 +1,120 @@
+//! Values of options that are chosen from a list.
+
+use clap::ValueEnum;
+use darrt_core::search::Algorithm;
+use darrt_core::solve::Cost;
+
+use crate::problem_file::{DistanceName, SamplerName};
+
+/// The samplers, as the command line spells them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SamplerChoice {
+    /// Either the robot or the objects (the paper)
+    RobotOrObjects,
+    /// A random subset of all that moves
+    RandomSubset,
+    /// All that moves
+    Full,
+}
+
+impl From<SamplerChoice> for SamplerName {
+    fn from(choice: SamplerChoice) -> Self {
+        match choice {
+            SamplerChoice::RobotOrObjects => Self::RobotOrObjects,
+            SamplerChoice::RandomSubset => Self::RandomSubset,
+            SamplerChoice::Full => Self::Full,
+        }
+    }
+}
+
+/// The distances, as the command line spells them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DistanceChoice {
+    /// The robot visits the objects, nearest first (the paper)
+    Greedy,
+    /// The sum of all ways
+    Euclidean,
+    /// The robot visits the objects in the best order
+    ExactTour,
+}
+
+impl From<DistanceChoice> for DistanceName {
+    fn from(choice: DistanceChoice) -> Self {
+        match choice {
+            DistanceChoice::Greedy => Self::Greedy,
+            DistanceChoice::Euclidean => Self::Euclidean,
+            DistanceChoice::ExactTour => Self::ExactTour,
+        }
+    }
+}
+
+/// The searches, as the command line spells them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SearchChoice {
+    /// One tree from the start (the paper)
+    Darrt,
+    /// A second tree from the goal
+    Connect,
+    /// The objects first, then the whole from subgoal to subgoal
+    Hierarchical,
+    /// All of them
+    Portfolio,
+}
+
+impl SearchChoice {
+    /// The searches that the attempts take in turn.
+    pub fn algorithms(self) -> Vec<Algorithm> {
+        match self {
+            Self::Darrt => vec![Algorithm::Darrt],
+            Self::Connect => vec![Algorithm::Connect],
+            Self::Hierarchical => vec![Algorithm::Hierarchical],
+            Self::Portfolio => Algorithm::ALL.to_vec(),
+        }
+    }
+}
+
+/// What makes one plan better than another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ImproveChoice {
+    /// Fewer steps
+    Steps,
+    /// Less travel of the robot
+    Travel,
+}
+
+impl From<ImproveChoice> for Cost {
+    fn from(choice: ImproveChoice) -> Self {
+        match choice {
+            ImproveChoice::Steps => Self::Steps,
+            ImproveChoice::Travel => Self::Travel,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn choices_are_spelled_as_in_problem_files() {
+        for choice in SamplerChoice::value_variants() {
+            let name = serde_json::to_value(SamplerName::from(*choice)).unwrap();
+            assert_eq!(name, choice.to_possible_value().unwrap().get_name());
+        }
+        for choice in DistanceChoice::value_variants() {
+            let name = serde_json::to_value(DistanceName::from(*choice)).unwrap();
+            assert_eq!(name, choice.to_possible_value().unwrap().get_name());
+        }
+    }
+
+    #[test]
+    fn searches_are_spelled_by_their_names() {
+        for choice in SearchChoice::value_variants() {
+            let algorithms = choice.algorithms();
+            match Algorithm::from_name(choice.to_possible_value().unwrap().get_name()) {
+                Some(algorithm) => assert_eq!(algorithms, [algorithm]),
+                None => assert_eq!((*choice, algorithms), (SearchChoice::Portfolio, Algorithm::ALL.to_vec())),
+            }
+        }
+    }
+}

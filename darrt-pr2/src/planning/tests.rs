@@ -1,0 +1,62 @@
+use darrt_core::observe::Silent;
+
+use super::*;
+use crate::problem_file::builtin;
+
+/// Bowl with a budget of iterations alone.
+fn request(iterations: u64) -> PlanRequest {
+    let mut request = PlanRequest::new(builtin("bowl").unwrap(), 5);
+    request.time_limit = Some(Duration::from_secs(3600));
+    request.iterations = Some(iterations);
+    request.restart = Some(100);
+    request
+}
+
+fn planned(request: &PlanRequest) -> PlanResult {
+    plan(request, &Cancel::new(), &mut Silent).unwrap()
+}
+
+/// Steps in the file.
+fn steps(result: &PlanResult) -> usize {
+    result.plan.as_ref().unwrap().steps.len()
+}
+
+#[test]
+fn more_budget_never_gives_a_plan_of_more_steps() {
+    let first = planned(&request(600));
+    assert_eq!(first.plans, 1);
+    let mut before = usize::MAX;
+    let mut plans = 0;
+    for iterations in [200, 600, 1200] {
+        let result = planned(&PlanRequest { improve: Some(Cost::Steps), ..request(iterations) });
+        assert!(result.plan.is_none() || result.proof.is_some(), "what is returned has been accepted");
+        assert!(result.plans >= plans);
+        plans = result.plans;
+        if result.plan.is_some() {
+            assert!(steps(&result) <= before);
+            before = steps(&result);
+        }
+    }
+    assert!(plans > 1 && before <= steps(&first), "{plans} {before}");
+}
+
+#[test]
+fn plans_are_not_improved_without_a_limit() {
+    let mut endless = PlanRequest { improve: Some(Cost::Travel), ..PlanRequest::new(builtin("bowl").unwrap(), 0) };
+    // Longer than the clock can tell.
+    endless.problem.budget.time_limit_s = f64::MAX;
+    let error = plan(&endless, &Cancel::new(), &mut Silent).unwrap_err();
+    assert!(matches!(error, PlanningError::NoLimit), "{error}");
+}
+
+#[test]
+fn several_searches_are_restarted_although_nothing_says_when() {
+    let mut both = request(RESTART_ITERATIONS + 1);
+    both.restart = None;
+    both.problem.budget.restart_iterations = None;
+    // The first search is never asked again if the second solves.
+    both.algorithms = Algorithm::ALL.to_vec();
+    both.problem.sampling.goal_bias = 0.0;
+    both.problem.sampling.object_share = 0.0;
+    assert_eq!(planned(&both).restarts, 1);
+}
