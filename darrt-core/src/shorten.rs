@@ -53,17 +53,8 @@ pub fn shorten<D: Domain>(
     if !extender.options.defer {
         return best;
     }
-    let mut left = options.extensions;
-    while left > 0 {
-        if let Some(steps) = mend(extender, best.as_ref().unwrap_or(plan), &mut left, rng) {
-            return Some(Plan::new(plan.start().clone(), steps));
-        }
-        // Without time for leaps every further round would only judge the same motions again.
-        if extender.interrupt.stop().is_some() {
-            break;
-        }
-    }
-    None
+    let steps = mend(extender, best.as_ref().unwrap_or(plan), options.extensions, rng)?;
+    Some(Plan::new(plan.start().clone(), steps))
 }
 
 /// Where the objects stand after a step that moves one.
@@ -137,11 +128,12 @@ fn retrace<D: Domain>(extender: &Extender<'_, D>, old: &Plan<D>, left: &mut usiz
     }
 }
 
-/// Judges the old plan from placement to placement. Behind a motion that is blocked it goes on in leaps that are judged.
+/// Judges the old plan from placement to placement. Behind a motion that is blocked it goes on in leaps that are judged, of
+/// at most `left` extensions; where they end nowhere others are tried.
 fn mend<D: Domain>(
     extender: &Extender<'_, D>,
     old: &Plan<D>,
-    left: &mut usize,
+    mut left: usize,
     rng: &mut dyn Rng,
 ) -> Option<Vec<Step<D>>> {
     let m = extender.problem.domain();
@@ -153,26 +145,40 @@ fn mend<D: Domain>(
         let begin = steps.len();
         let end = placements.get(done).map_or(old.steps().len(), |next| next.step + 1);
         let known = old.steps().get(begin..end).unwrap_or_default().iter().cloned();
-        match settle(extender, &here, known, rng) {
-            Ok(known) if done == placements.len() => {
-                steps.extend(known);
-                return Some(steps);
-            }
-            Ok(known) => {
-                steps.extend(known);
-                here = old.at(m, end - 1, 1.0)?;
-                done += 1;
-            }
-            Err(_) => break,
+        let Ok(known) = settle(extender, &here, known, rng) else { break };
+        steps.extend(known);
+        if done == placements.len() {
+            return Some(steps);
+        }
+        here = old.at(m, end - 1, 1.0)?;
+        done += 1;
+    }
+    while left > 0 && extender.interrupt.stop().is_none() {
+        let ahead = placements.get(done..).unwrap_or_default();
+        if let Some(behind) = leaps(extender, here.clone(), ahead, &mut left, rng) {
+            steps.extend(behind);
+            return Some(steps);
         }
     }
+    None
+}
+
+/// To the goal in leaps that are judged, if each is followed by another.
+fn leaps<D: Domain>(
+    extender: &Extender<'_, D>,
+    mut here: State<D>,
+    mut ahead: &[Placement<D>],
+    left: &mut usize,
+    rng: &mut dyn Rng,
+) -> Option<Vec<Step<D>>> {
     let judge = &mut |here: &State<D>, steps: Vec<Step<D>>, rng: &mut dyn Rng| settle(extender, here, steps, rng).ok();
+    let mut steps = Vec::new();
     loop {
-        let leap = leap(extender, &here, placements.get(done..).unwrap_or_default(), left, judge, rng)?;
+        let leap = leap(extender, &here, ahead, left, judge, rng)?;
         steps.extend(leap.steps);
         here = leap.end;
         match leap.passed {
-            Some(passed) => done += passed,
+            Some(passed) => ahead = ahead.get(passed..).unwrap_or_default(),
             None => return Some(steps),
         }
     }

@@ -14,6 +14,7 @@ use darrt_core::problem::{Parts, Problem};
 use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
+use darrt_core::smooth::SmoothOptions;
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
 use darrt_core::verify::{Refusal, Verifier};
 use darrt_primitives::detour::Detour;
@@ -63,6 +64,8 @@ pub struct PlanRequest {
     /// Go on until the budget ends, and keep the plan that is the cheapest in this; `None`: end with the first plan.
     /// Attempts are restarted after 2000 iterations if nothing says when.
     pub improve: Option<Cost>,
+    /// Extensions that are made at most to make a plan that has been found smoother; 0: none.
+    pub smooth: usize,
     /// Changes the search strategy after all else; `None`: as it is.
     pub adjust: Option<fn(&mut Strategy<World>)>,
 }
@@ -81,6 +84,7 @@ impl PlanRequest {
             distance: None,
             algorithms: vec![Algorithm::default()],
             improve: None,
+            smooth: 0,
             adjust: None,
         }
     }
@@ -247,6 +251,7 @@ pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer)
     let prepared = prepare_watched(&request.problem, request.improve, cancel, &watch)?;
     let (sampler, distance) = chosen(request);
     let mut strategy = strategy(&request.problem.sampling, sampler, distance)?;
+    strategy.smooth.attempts = request.smooth;
     if let Some(adjust) = request.adjust {
         adjust(&mut strategy);
     }
@@ -351,6 +356,7 @@ pub fn strategy(
         reroute: Some(Box::new(Detour::default())),
         try_penalty_m: TRY_PENALTY,
         shorten: ShortenOptions { extensions: SHORTENING },
+        smooth: SmoothOptions::default(),
     })
 }
 

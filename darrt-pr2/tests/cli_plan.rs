@@ -80,7 +80,7 @@ fn one_seed_gives_one_file() {
 #[test]
 fn every_search_solves_the_bowl_and_says_so() {
     let folder = tempfile::tempdir().unwrap();
-    for search in ["darrt", "connect", "hierarchical", "portfolio"] {
+    for search in ["darrt", "connect", "hierarchical", "hierarchical-connect", "portfolio"] {
         let (printed, _) = run(folder.path(), &["plan", "bowl", "--search", search, "--no-picture"], 0);
         assert!(printed.contains("bowl: solved in") && printed.contains("verified: "), "{search}: {printed}");
     }

@@ -146,7 +146,6 @@ impl CollisionModel {
             let kept = if is_left_out { BodySet::EMPTY } else { registered.partners.difference(bodies) };
             registered.partners = kept;
         }
-        model.moving_pairs.retain(|(a, b)| !bodies.contains(*a) && !bodies.contains(*b));
         model
     }
 

@@ -108,6 +108,9 @@ pub struct PlanOptions {
     /// Go on until the limit, and keep the plan with the fewest steps or the shortest travel
     #[arg(long, value_enum, value_name = "COST")]
     pub improve: Option<ImproveChoice>,
+    /// Extensions that are spent on making a plan smoother: shortcuts, moves in one, no pushes back and forth
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
+    pub smooth: u64,
     /// Attempts that run at the same time, 1 to 256; helps only with restarts
     #[arg(long, default_value_t = 1, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
     pub threads: usize,

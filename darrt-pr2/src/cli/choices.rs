@@ -57,6 +57,8 @@ pub enum SearchChoice {
     Connect,
     /// The objects first, then the whole from subgoal to subgoal
     Hierarchical,
+    /// The same, with a second tree from every subgoal
+    HierarchicalConnect,
     /// All of them
     Portfolio,
 }
@@ -68,6 +70,7 @@ impl SearchChoice {
             Self::Darrt => vec![Algorithm::Darrt],
             Self::Connect => vec![Algorithm::Connect],
             Self::Hierarchical => vec![Algorithm::Hierarchical],
+            Self::HierarchicalConnect => vec![Algorithm::HierarchicalConnect],
             Self::Portfolio => Algorithm::ALL.to_vec(),
         }
     }

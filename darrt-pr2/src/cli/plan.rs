@@ -58,6 +58,7 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
         distance: options.distance.map(Into::into),
         algorithms: options.search.algorithms(),
         improve: options.improve.map(Into::into),
+        smooth: usize::try_from(options.smooth).unwrap_or(usize::MAX),
         adjust: None,
     }
 }
