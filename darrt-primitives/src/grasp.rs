@@ -127,6 +127,12 @@ pub trait GraspFamily: Send + Sync {
 
     /// A fixed selection that covers the family evenly, in a fixed order.
     fn grid(&self) -> Vec<Grasp>;
+
+    /// Does every grasp of the family need the rim to stick out over the edge of the support (all of kind
+    /// [`GraspKind::Rim`])? Where it does not, none of them is drawn.
+    fn needs_overhang(&self) -> bool {
+        false
+    }
 }
 
 /// The hand's side of a grasp: what is common to all grasps of a family. Lengths in metres.

@@ -235,20 +235,46 @@ impl Surroundings {
         contacts: &Contacts,
     ) -> Result<(), Blame> {
         let hit = self.with_worker(|worker| {
-            self.allow(like, contacts, &mut worker.allowed);
-            self.pose_objects(like, worker);
-            for (id, tool_from_link) in &hand.tool_from_link {
-                self.model.set_pose(&mut worker.scratch, *id, &(world_from_tool * tool_from_link));
-            }
-            let mut moved = self.hand_links;
-            let with = contacts.support.map(|(object, _)| object).or(like.mode.held().map(|held| held.object));
-            if let Some(object) = with.and_then(|object| self.objects.get(object.index())) {
-                moved.insert(*object);
-            }
-            let others = BodySet::ALL.difference(&self.all_links.difference(&self.hand_links));
+            let (moved, others) = self.pose_hand(hand, like, world_from_tool, contacts, worker);
             self.lower_bound(worker, &moved, &others, 0.0)
         });
         hit.map(|_| ()).map_err(|hit| self.blame(&hit))
+    }
+
+    /// [`Surroundings::check_hand`] without reasons.
+    pub fn is_hand_clear<M: Manipulator>(
+        &self,
+        hand: &Hand,
+        like: &TabletopState<M>,
+        world_from_tool: &Isometry3<f64>,
+        contacts: &Contacts,
+    ) -> bool {
+        self.with_worker(|worker| {
+            let (moved, others) = self.pose_hand(hand, like, world_from_tool, contacts, worker);
+            self.is_clear(worker, &moved, &others)
+        })
+    }
+
+    /// Puts objects and hand where they are asked about; says what counts as moved, and against what.
+    fn pose_hand<M: Manipulator>(
+        &self,
+        hand: &Hand,
+        like: &TabletopState<M>,
+        world_from_tool: &Isometry3<f64>,
+        contacts: &Contacts,
+        worker: &mut Worker,
+    ) -> (BodySet, BodySet) {
+        self.allow(like, contacts, &mut worker.allowed);
+        self.pose_objects(like, worker);
+        for (id, tool_from_link) in &hand.tool_from_link {
+            self.model.set_pose(&mut worker.scratch, *id, &(world_from_tool * tool_from_link));
+        }
+        let mut moved = self.hand_links;
+        let with = contacts.support.map(|(object, _)| object).or(like.mode.held().map(|held| held.object));
+        if let Some(object) = with.and_then(|object| self.objects.get(object.index())) {
+            moved.insert(*object);
+        }
+        (moved, BodySet::ALL.difference(&self.all_links.difference(&self.hand_links)))
     }
 
     /// How far a resting object could slide in a straight line if the robot were not there: metres along `way`, at most

@@ -39,21 +39,23 @@ pub fn pick<M: Manipulator>(
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
     let movable = m.movable(object).ok_or(Infeasible::NoGrasp)?;
     let pose = from.object(object).ok_or(Infeasible::NoGrasp)?;
-    if movable.grasps.is_empty() {
+    let overhangs = overhangs(m, from, object, movable, pose);
+    if movable.grasps.iter().all(|family| family.needs_overhang() && !overhangs) {
         return Err(Infeasible::NoGrasp);
     }
     let mut chain = Chain::at(from);
     retreat(m, &mut chain)?;
     let beside = from.mode.engaged_with(object).ok_or(Infeasible::NoGrasp)?;
-    let overhangs = overhangs(m, from, object, movable, pose);
     let mut fitted = 0;
     let mut why = Infeasible::NoGrasp;
     for _ in 0..m.settings().grasp_tries * GRASPS_PER_TRY {
         let Some(family) = movable.grasps.get(rng.random_range(0..movable.grasps.len())) else { continue };
+        if family.needs_overhang() && !overhangs {
+            continue;
+        }
         let mut grasp = family.sample(rng);
         grasp.open_gap_m = grasp.open_gap_m.min(m.manipulator().hand().max_gap_m());
-        let is_rim = matches!(grasp.kind, GraspKind::Rim { .. });
-        if (is_rim && !overhangs) || !fits(m, from, object, movable, pose, &grasp) {
+        if !fits(m, from, object, movable, pose, &grasp) {
             continue;
         }
         let at_grasp = grasp.world_from_tool(pose);

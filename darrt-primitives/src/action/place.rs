@@ -48,7 +48,8 @@ pub fn place<M: Manipulator>(
         n => directions.get(rng.random_range(0..n)).copied().unwrap_or(-Vector3::z()),
     };
     let released = from.mode.released_on(surface, release_gap_m(m, from)).ok_or(Infeasible::NoGrasp)?;
-    let mut why = Infeasible::Unreachable;
+    let mut why = None;
+    let mut in_the_way = None;
     let mut before = Probe::new(m, from, from.mode.clone());
     let mut after = Probe::new(m, from, released);
     let letting_go = contacts(held.object, surface);
@@ -59,9 +60,9 @@ pub fn place<M: Manipulator>(
         before.place(held.object, &standing);
         after.place(held.object, &standing);
         // With the fingers closed as much as opened: the lower one moves beside the surface when it lets go.
-        let hand_at = |probe: &Probe<'_, M>| probe.check_hand(&at_place, &letting_go);
-        if let Err(blame) = hand_at(&before).and_then(|()| hand_at(&after)) {
-            why = Infeasible::Blocked(blame);
+        if let Some(probe) = [&before, &after].into_iter().find(|probe| !probe.is_hand_clear(&at_place, &letting_go)) {
+            // What it is, is found out once.
+            in_the_way = in_the_way.or_else(|| probe.check_hand(&at_place, &letting_go).err());
             continue;
         }
         clear += 1;
@@ -73,13 +74,13 @@ pub fn place<M: Manipulator>(
         });
         match way {
             Ok(way) => return assemble(m, from, &held, surface, &way, rng),
-            Err(refused) => why = refused,
+            Err(refused) => why = Some(refused),
         }
         if clear >= m.settings().grasp_tries {
             break;
         }
     }
-    Err(why)
+    Err(why.or(in_the_way.map(Infeasible::Blocked)).unwrap_or(Infeasible::Unreachable))
 }
 
 /// How many turns of the object are drawn: the fingers must find room beside the surface, and at the corner of a table

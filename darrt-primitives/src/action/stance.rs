@@ -125,9 +125,16 @@ impl<'a, M: Manipulator> Probe<'a, M> {
     /// # Errors
     /// What is in its way.
     pub fn check_hand(&self, world_from_tool: &Isometry3<f64>, contacts: &Contacts) -> Result<(), Blame> {
-        let around = self.m.surroundings();
-        let hand = self.hand.get_or_init(|| around.hand(self.m.manipulator(), &self.state));
-        around.check_hand(hand, &self.state, world_from_tool, contacts)
+        self.m.surroundings().check_hand(self.hand(), &self.state, world_from_tool, contacts)
+    }
+
+    /// [`Probe::check_hand`] without reasons, which takes less time where it is asked often.
+    pub fn is_hand_clear(&self, world_from_tool: &Isometry3<f64>, contacts: &Contacts) -> bool {
+        self.m.surroundings().is_hand_clear(self.hand(), &self.state, world_from_tool, contacts)
+    }
+
+    fn hand(&self) -> &Hand {
+        self.hand.get_or_init(|| self.m.surroundings().hand(self.m.manipulator(), &self.state))
     }
 
     /// Is nothing in the way with the robot at `q`, what it holds in its hand?

@@ -109,6 +109,10 @@ impl RimGrasps {
 }
 
 impl GraspFamily for RimGrasps {
+    fn needs_overhang(&self) -> bool {
+        true
+    }
+
     fn sample(&self, rng: &mut dyn rand::Rng) -> Grasp {
         let azimuth = rng.random_range(0.0..TAU);
         let tilt = rng.random_range(self.options.min_tilt..=self.options.max_tilt);
