@@ -34,7 +34,7 @@ pub struct Variant {
 }
 
 /// All variants; the first is the planner as it is. A new variant is one line here.
-pub const VARIANTS: [Variant; 25] = [
+pub const VARIANTS: [Variant; 28] = [
     variant("default", "as the problem says", |_| {}),
     variant("robot-or-objects", "samples name the robot or the objects", |r| {
         r.sampler = Some(SamplerName::RobotOrObjects);
@@ -101,6 +101,14 @@ pub const VARIANTS: [Variant; 25] = [
     variant("hierarchical", "DARRTH: the objects first, then the whole from subgoal to subgoal", |r| {
         r.algorithms = vec![Algorithm::Hierarchical];
     }),
+    variant("hierarchical-connect", "DARRTHConnect: the same, with a second tree from every subgoal", |r| {
+        r.algorithms = vec![Algorithm::HierarchicalConnect];
+    }),
+    variant("portfolio", "the attempts take all searches in turn, 300 iterations each", |r| {
+        r.algorithms = Algorithm::ALL.to_vec();
+        r.restart = Some(300);
+    }),
+    variant("smooth", "every plan is made smoother in up to 100 extensions", |r| r.smooth = 100),
     variant("no-restarts", "one tree until the end", |r| r.problem.budget.restart_iterations = None),
     variant("restart-300", "a new tree every 300 iterations", |r| r.restart = Some(300)),
     variant("paper", "Algorithm 1 as printed: straight lines, plain arg min, fine steps, no shortening", |r| {

@@ -70,7 +70,8 @@ impl JointTable {
         if let Some((name, _)) = listed.next() {
             return Err(JointFlaw::Unknown { name: name.to_string() });
         }
-        for ((name, entry), found) in self.entries.iter().zip(joints.values()).filter(|((_, entry), _)| !entry.is_free) {
+        for ((name, entry), found) in self.entries.iter().zip(joints.values()).filter(|((_, entry), _)| !entry.is_free)
+        {
             let expected = entry.value(variables.get(entry.variable).copied().unwrap_or(0.0));
             let off = (found - expected).abs();
             if off.is_nan() || off > 1e-9 {
@@ -165,7 +166,8 @@ mod tests {
     fn wrong_lists_are_refused_by_name() {
         let (table, tree) = table();
         let good = table.complete(&tree.neutral());
-        let message = |edit: &dyn Fn(&mut BTreeMap<Arc<str>, f64>)| {
+        type Joints = BTreeMap<Arc<str>, f64>;
+        let message = |edit: &dyn Fn(&mut Joints)| {
             let mut joints = good.clone();
             edit(&mut joints);
             table.variables(&joints).unwrap_err().to_string()

@@ -89,7 +89,19 @@ impl<'a> Judge<'a> {
         let approach = Approach::new(&robot)
             .ok_or_else(|| Refusal::whole(RefusalKind::Problem, "more joints move than any robot of this kind has"))?;
         let modes = world.movables.iter().map(|m| Mode::Resting { surface: m.start_surface }).collect();
-        Ok(Self { plan, options, cancel, robot, world, stage, approach, modes, links: Vec::new(), placed_base: None, waypoints: 0 })
+        Ok(Self {
+            plan,
+            options,
+            cancel,
+            robot,
+            world,
+            stage,
+            approach,
+            modes,
+            links: Vec::new(),
+            placed_base: None,
+            waypoints: 0,
+        })
     }
 
     /// The whole plan.
