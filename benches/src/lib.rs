@@ -5,6 +5,7 @@
 //! | [`arm`] | configurations and reachable poses of the PR2's right arm |
 //! | [`room`] | the PR2 in the scene of Plate3, and random states there |
 //! | [`trees`] | trees of any size in any domain |
+//! | [`boxes`] | the PR2 before a table with ten boxes |
 //! | [`pucks`] | trees, strategies and runs of the puck domain |
 
 #![allow(
@@ -15,6 +16,7 @@
 )]
 
 pub mod arm;
+pub mod boxes;
 pub mod pucks;
 pub mod room;
 pub mod trees;

@@ -73,20 +73,25 @@ pub enum Cost {
     Steps,
     /// Fewer metres of travel; among equals the fewer steps.
     Travel,
+    /// More distance between bodies that may not touch, where they are nearest
+    /// ([`Verifier::clearance_m`](crate::verify::Verifier::clearance_m)); among equals the fewer steps.
+    Clearance,
 }
 
 impl Cost {
-    /// The cost of a plan: the less in the order of the pair, the better.
-    pub fn of<D: Domain>(self, plan: &Plan<D>) -> (f64, f64) {
+    /// The cost of a plan: the less in the order of the pair, the better. A clearance that is not known is the smallest.
+    pub fn of<D: Domain>(self, plan: &Plan<D>, clearance_m: Option<f64>) -> (f64, f64) {
         let (steps, metres) = (plan.steps().len() as f64, plan.length());
         match self {
             Self::Steps => (steps, metres),
             Self::Travel => (metres, steps),
+            Self::Clearance => (-clearance_m.unwrap_or(f64::NEG_INFINITY), steps),
         }
     }
 
     fn is_less<D: Domain>(self, a: &Solution<D>, b: &Solution<D>) -> bool {
-        let ((a, second), (b, other)) = (self.of(a.plan()), self.of(b.plan()));
+        let of = |solution: &Solution<D>| self.of(solution.plan(), solution.clearance_m());
+        let ((a, second), (b, other)) = (of(a), of(b));
         a.total_cmp(&b).then(second.total_cmp(&other)).is_lt()
     }
 }
@@ -219,6 +224,17 @@ pub fn solve_with<D: Domain>(
     shared.outcome()
 }
 
+/// Keeps the cheapest of the solutions, of equally cheap ones that of the lowest attempt: a long search finds many.
+fn forget_dearer<D: Domain>(done: &mut [Attempt<D>], cost: Cost) {
+    let found = done.iter().filter_map(|attempt| Some((attempt.number, attempt.solution.as_ref()?)));
+    let cheapest = found.reduce(|best, next| {
+        let is_better = cost.is_less(next.1, best.1) || (!cost.is_less(best.1, next.1) && next.0 < best.0);
+        if is_better { next } else { best }
+    });
+    let kept = cheapest.map(|(number, _)| number);
+    done.iter_mut().filter(|attempt| Some(attempt.number) != kept).for_each(|attempt| attempt.solution = None);
+}
+
 impl<D: Domain> Shared<'_, D> {
     /// Takes attempts until there are none left or the budget ends.
     fn work(&self) {
@@ -239,6 +255,9 @@ impl<D: Domain> Shared<'_, D> {
                 || (attempt.stop == Stop::NodeLimit && self.options.restart_iterations.is_some());
             if let Ok(mut done) = self.done.lock() {
                 done.push(attempt);
+                if let Until::BudgetEnds(cost) = self.until {
+                    forget_dearer(&mut done, cost);
+                }
             }
             if !goes_on {
                 return;

@@ -37,23 +37,30 @@ pub trait Verifier<D: Domain>: Send + Sync {
     /// # Errors
     /// The first [`Refusal`] found.
     fn verify(&self, m: &D, start: &State<D>, goal: &dyn Goal<D>, plan: &Plan<D>) -> Result<(), Refusal>;
+
+    /// The smallest distance, in metres, of two bodies that may not touch in a plan that it has just accepted; `None` if it
+    /// does not measure that, or keeps it no longer.
+    fn clearance_m(&self, _plan: &Plan<D>) -> Option<f64> {
+        None
+    }
 }
 
 /// A plan that a verifier has accepted. There is no other way to make one.
 pub struct Solution<D: Domain> {
     plan: Plan<D>,
+    clearance_m: Option<f64>,
 }
 
 impl<D: Domain> Clone for Solution<D> {
     fn clone(&self) -> Self {
-        Self { plan: self.plan.clone() }
+        Self { plan: self.plan.clone(), clearance_m: self.clearance_m }
     }
 }
 
 // Not derived: that would ask the domain to be printable.
 impl<D: Domain> fmt::Debug for Solution<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Solution").field("plan", &self.plan).finish()
+        f.debug_struct("Solution").field("plan", &self.plan).field("clearance_m", &self.clearance_m).finish()
     }
 }
 
@@ -70,12 +77,18 @@ impl<D: Domain> Solution<D> {
         plan: Plan<D>,
     ) -> Result<Self, Refusal> {
         verifier.verify(m, start, goal, &plan)?;
-        Ok(Self { plan })
+        let clearance_m = verifier.clearance_m(&plan);
+        Ok(Self { plan, clearance_m })
     }
 
     /// The plan.
     pub fn plan(&self) -> &Plan<D> {
         &self.plan
+    }
+
+    /// The smallest distance that the verifier saw, metres; `None` if it does not measure it.
+    pub fn clearance_m(&self) -> Option<f64> {
+        self.clearance_m
     }
 }
 

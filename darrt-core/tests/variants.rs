@@ -163,7 +163,7 @@ fn algorithms_go_by_name() {
 fn anytime_never_returns_a_dearer_plan_for_more_budget() {
     let problem = problems::two_pucks().unwrap();
     for cost in [Cost::Steps, Cost::Travel] {
-        let cost_of = |outcome: &Outcome<PuckWorld>| cost.of(outcome.solution.as_ref().unwrap().plan());
+        let cost_of = |outcome: &Outcome<PuckWorld>| cost.of(outcome.solution.as_ref().unwrap().plan(), None);
         let first = run(&problem, Algorithm::Darrt, Until::Solved, &options(5, 4_000));
         let mut last = cost_of(&first);
         let mut improved = false;

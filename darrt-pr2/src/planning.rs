@@ -66,6 +66,9 @@ pub struct PlanRequest {
     pub improve: Option<Cost>,
     /// Extensions that are made at most to make a plan that has been found smoother; 0: none.
     pub smooth: usize,
+    /// Draw where the robot stands from its inverse reachability model, not from a ring around the hand's pose; see
+    /// [`with_bases_from_reachability`](crate::robot::Pr2::with_bases_from_reachability).
+    pub bases_from_reachability: bool,
     /// Changes the search strategy after all else; `None`: as it is.
     pub adjust: Option<fn(&mut Strategy<World>)>,
 }
@@ -85,6 +88,7 @@ impl PlanRequest {
             algorithms: vec![Algorithm::default()],
             improve: None,
             smooth: 0,
+            bases_from_reachability: false,
             adjust: None,
         }
     }
@@ -144,6 +148,10 @@ impl AcceptedPlan {
         self.plan.steps().len() == plan.steps().len()
             && steps.into_iter().all(|(a, b)| Arc::ptr_eq(&a.instance, &b.instance) && a.until == b.until)
     }
+
+    fn clearance_m(&self) -> Option<f64> {
+        self.proof.smallest_clearance.as_ref().map(|smallest| smallest.distance_m)
+    }
 }
 
 /// The plans that were accepted: one for each thread that came to one, at most; when plans are improved, the cheapest.
@@ -170,14 +178,18 @@ impl Verifier<World> for FileVerifier {
             Err(refusal) => Err(Refusal { step: None, at: 0.0, reason: refusal.to_string() }),
         }
     }
+
+    fn clearance_m(&self, plan: &Plan<World>) -> Option<f64> {
+        self.accepted.lock().ok()?.iter().find(|accepted| accepted.is_of(plan))?.clearance_m()
+    }
 }
 
 /// Adds a plan, without those that are dearer than another.
 fn keep(accepted: &mut Vec<AcceptedPlan>, plan: AcceptedPlan, improve: Option<Cost>) {
     if let Some(cost) = improve {
-        let price = cost.of(&plan.plan);
-        accepted.retain(|other| cost.of(&other.plan) <= price);
-        if accepted.iter().any(|other| cost.of(&other.plan) < price) {
+        let price = cost.of(&plan.plan, plan.clearance_m());
+        accepted.retain(|other| cost.of(&other.plan, other.clearance_m()) <= price);
+        if accepted.iter().any(|other| cost.of(&other.plan, other.clearance_m()) < price) {
             return;
         }
     }
@@ -207,18 +219,20 @@ pub fn prepare(file: &ProblemFile) -> Result<Prepared, PlanningError> {
 /// # Errors
 /// As [`prepare`].
 pub fn prepare_unless(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, PlanningError> {
-    prepare_watched(file, None, cancel, &Stopwatch::start())
+    prepare_watched(&PlanRequest::new(file.clone(), 0), cancel, &Stopwatch::start())
 }
 
 fn prepare_watched(
-    file: &ProblemFile,
-    improve: Option<Cost>,
+    request: &PlanRequest,
     cancel: &Cancel,
     watch: &Arc<Stopwatch>,
 ) -> Result<Prepared, PlanningError> {
+    let (file, improve) = (&request.problem, request.improve);
     check_companions(file)?;
     crate::goal_means::check_means(file)?;
-    let Built { world, start, goal, scene } = world::build(file)?;
+    let Built { world, start, goal, scene } = world::build_with(file, |robot| {
+        if request.bases_from_reachability { robot.with_bases_from_reachability() } else { robot }
+    })?;
     let validity = SceneValidity::new(&world);
     crate::goal_check::check_goal(&world, &goal, &scene)?;
     let exporter = Arc::new(Exporter::new(file, &world)?);
@@ -248,7 +262,7 @@ fn prepare_watched(
 /// [`PlanningError`] when the problem cannot be planned at all; see [`prepare`].
 pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer) -> Result<PlanResult, PlanningError> {
     let watch = Stopwatch::start();
-    let prepared = prepare_watched(&request.problem, request.improve, cancel, &watch)?;
+    let prepared = prepare_watched(request, cancel, &watch)?;
     let (sampler, distance) = chosen(request);
     let mut strategy = strategy(&request.problem.sampling, sampler, distance)?;
     strategy.smooth.attempts = request.smooth;

@@ -57,7 +57,16 @@ pub struct Built {
 /// # Errors
 /// [`PlanningError`] with the key at fault when the robot's description, a shape, a grasp or a number cannot be used.
 pub fn build(problem: &ProblemFile) -> Result<Built, PlanningError> {
+    build_with(problem, |robot| robot)
+}
+
+/// [`build`], with the robot changed before anything is made of it.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_with(problem: &ProblemFile, change: impl FnOnce(Pr2) -> Pr2) -> Result<Built, PlanningError> {
     let (robot, arm) = robot_of(problem)?;
+    let robot = change(robot);
     let geometry = problem.geometry()?;
     let bounds = &problem.bounds;
     let lower = [bounds.base_x[0], bounds.base_y[0]];

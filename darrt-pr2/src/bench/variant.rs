@@ -34,7 +34,7 @@ pub struct Variant {
 }
 
 /// All variants; the first is the planner as it is. A new variant is one line here.
-pub const VARIANTS: [Variant; 28] = [
+pub const VARIANTS: [Variant; 29] = [
     variant("default", "as the problem says", |_| {}),
     variant("robot-or-objects", "samples name the robot or the objects", |r| {
         r.sampler = Some(SamplerName::RobotOrObjects);
@@ -88,6 +88,9 @@ pub const VARIANTS: [Variant; 28] = [
     }),
     variant("frontier", "three in ten samples lie where extensions were blocked", |r| {
         r.adjust = Some(|s| resample(s, |inner| Ok(Box::new(Frontier::new(inner, 0.3, 0.2)?))));
+    }),
+    variant("reachability", "where the robot stands is drawn from its inverse reachability model", |r| {
+        r.bases_from_reachability = true;
     }),
     variant("weighted", "distance: the robot's way counts three tenths", |r| {
         r.adjust = Some(|s| remeasure(s, || Weighted::sum(0.3, 1.0)));

@@ -105,7 +105,7 @@ pub struct PlanOptions {
     /// Which search; the attempts of `portfolio` take all of them in turn
     #[arg(long, value_enum, default_value_t = SearchChoice::Darrt)]
     pub search: SearchChoice,
-    /// Go on until the limit, and keep the plan with the fewest steps or the shortest travel
+    /// Go on until the limit, and keep the plan with the fewest steps, the shortest travel or the most clearance
     #[arg(long, value_enum, value_name = "COST")]
     pub improve: Option<ImproveChoice>,
     /// Extensions that are spent on making a plan smoother: shortcuts, moves in one, no pushes back and forth

@@ -83,6 +83,8 @@ pub enum ImproveChoice {
     Steps,
     /// Less travel of the robot
     Travel,
+    /// More distance between bodies that may not touch
+    Clearance,
 }
 
 impl From<ImproveChoice> for Cost {
@@ -90,6 +92,7 @@ impl From<ImproveChoice> for Cost {
         match choice {
             ImproveChoice::Steps => Self::Steps,
             ImproveChoice::Travel => Self::Travel,
+            ImproveChoice::Clearance => Self::Clearance,
         }
     }
 }

@@ -59,6 +59,7 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
         algorithms: options.search.algorithms(),
         improve: options.improve.map(Into::into),
         smooth: usize::try_from(options.smooth).unwrap_or(usize::MAX),
+        bases_from_reachability: false,
         adjust: None,
     }
 }

@@ -162,11 +162,12 @@ mod tests {
         assert_eq!(table.variables(&joints).unwrap(), variables);
     }
 
+    type Joints = BTreeMap<Arc<str>, f64>;
+
     #[test]
     fn wrong_lists_are_refused_by_name() {
         let (table, tree) = table();
         let good = table.complete(&tree.neutral());
-        type Joints = BTreeMap<Arc<str>, f64>;
         let message = |edit: &dyn Fn(&mut Joints)| {
             let mut joints = good.clone();
             edit(&mut joints);

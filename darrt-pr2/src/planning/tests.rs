@@ -41,6 +41,19 @@ fn more_budget_never_gives_a_plan_of_more_steps() {
 }
 
 #[test]
+fn more_budget_never_gives_a_plan_of_less_clearance() {
+    let clearance_m = |iterations, threads| {
+        let request = PlanRequest { improve: Some(Cost::Clearance), threads, ..request(iterations) };
+        let proof = planned(&request).proof.unwrap();
+        proof.smallest_clearance.unwrap().distance_m
+    };
+    let first = planned(&request(600)).proof.unwrap().smallest_clearance.unwrap().distance_m;
+    let (some, more) = (clearance_m(600, 1), clearance_m(1200, 1));
+    assert!(first <= some && some <= more && first < more, "{first} {some} {more}");
+    assert_eq!(clearance_m(1200, 2), more);
+}
+
+#[test]
 fn plans_are_not_improved_without_a_limit() {
     let mut endless = PlanRequest { improve: Some(Cost::Travel), ..PlanRequest::new(builtin("bowl").unwrap(), 0) };
     // Longer than the clock can tell.

@@ -1,0 +1,144 @@
+//! Is there room for a part alone: the base without its arm, the hand without an arm behind it, an object that slides?
+//!
+//! Much cheaper than to look for a base and an arm first, so it is asked before.
+
+use darrt_core::state::ObjectId;
+use darrt_core::validity::Blame;
+use darrt_geom::allowed::AllowedContacts;
+use darrt_geom::body_set::{BodyIndex, BodySet};
+use nalgebra::{Isometry3, Vector3};
+
+use super::{Surroundings, Worker};
+use crate::manipulator::{Configuration, Manipulator};
+use crate::mode::Contacts;
+use crate::tabletop::TabletopState;
+
+/// The bodies of the hand as they hang on the tool.
+#[derive(Debug, Clone)]
+pub struct Hand {
+    tool_from_link: Vec<(BodyIndex, Isometry3<f64>)>,
+}
+
+impl Surroundings {
+    /// Do base, trunk and whatever else is rigid to the base keep clear of the fixed bodies? Asks nothing of the arm.
+    pub fn is_base_clear<M: Manipulator>(&self, robot: &M, q: &Configuration<M::Joints>) -> bool {
+        self.with_worker(|worker| {
+            worker.allowed = AllowedContacts::none();
+            let (link_poses, _) = worker.poses.split_at_mut(self.links.len());
+            robot.link_poses(q, robot.hand().max_gap_m(), link_poses);
+            for (id, pose) in self.links.iter().zip(link_poses.iter()) {
+                self.model.set_pose(&mut worker.scratch, *id, pose);
+            }
+            // What the arm does and where the objects are does not count.
+            let against = BodySet::ALL.difference(self.model.moving());
+            self.is_clear(worker, &self.base_links, &against)
+        })
+    }
+
+    /// The hand with the opening of `like`, for [`Surroundings::check_hand`].
+    pub fn hand<M: Manipulator>(&self, robot: &M, like: &TabletopState<M>) -> Hand {
+        let mut world_from_link = vec![Isometry3::identity(); self.links.len()];
+        robot.link_poses(&like.robot, like.mode.gap_m(), &mut world_from_link);
+        let tool_from_world = robot.world_from_tool(&like.robot).inverse();
+        let links = self.links.iter().zip(&world_from_link).filter(|(id, _)| self.hand_links.contains(**id));
+        Hand { tool_from_link: links.map(|(id, pose)| (*id, tool_from_world * pose)).collect() }
+    }
+
+    /// Could the hand be at `world_from_tool` with the objects of `like`, if there were no arm behind it? The hand and the
+    /// object that `contacts` or the mode names are asked about. Much cheaper than to look for an arm and a base first.
+    ///
+    /// # Errors
+    /// The first pair found.
+    pub fn check_hand<M: Manipulator>(
+        &self,
+        hand: &Hand,
+        like: &TabletopState<M>,
+        world_from_tool: &Isometry3<f64>,
+        contacts: &Contacts,
+    ) -> Result<(), Blame> {
+        let hit = self.with_worker(|worker| {
+            let (moved, others) = self.pose_hand(hand, like, world_from_tool, contacts, worker);
+            self.lower_bound(worker, &moved, &others, 0.0)
+        });
+        hit.map(|_| ()).map_err(|hit| self.blame(&hit))
+    }
+
+    /// [`Surroundings::check_hand`] without reasons.
+    pub fn is_hand_clear<M: Manipulator>(
+        &self,
+        hand: &Hand,
+        like: &TabletopState<M>,
+        world_from_tool: &Isometry3<f64>,
+        contacts: &Contacts,
+    ) -> bool {
+        self.with_worker(|worker| {
+            let (moved, others) = self.pose_hand(hand, like, world_from_tool, contacts, worker);
+            self.is_clear(worker, &moved, &others)
+        })
+    }
+
+    /// Puts objects and hand where they are asked about; says what counts as moved, and against what.
+    fn pose_hand<M: Manipulator>(
+        &self,
+        hand: &Hand,
+        like: &TabletopState<M>,
+        world_from_tool: &Isometry3<f64>,
+        contacts: &Contacts,
+        worker: &mut Worker,
+    ) -> (BodySet, BodySet) {
+        self.allow(like, contacts, &mut worker.allowed);
+        self.pose_objects(like, worker);
+        for (id, tool_from_link) in &hand.tool_from_link {
+            self.model.set_pose(&mut worker.scratch, *id, &(world_from_tool * tool_from_link));
+        }
+        let mut moved = self.hand_links;
+        let with = contacts.support.map(|(object, _)| object).or(like.mode.held().map(|held| held.object));
+        if let Some(object) = with.and_then(|object| self.objects.get(object.index())) {
+            moved.insert(*object);
+        }
+        (moved, BodySet::ALL.difference(&self.all_links.difference(&self.hand_links)))
+    }
+
+    /// How far a resting object could slide in a straight line if the robot were not there: metres along `way`, at most
+    /// its length, and what ends it.
+    pub fn free_slide<M: Manipulator>(
+        &self,
+        from: &TabletopState<M>,
+        object: ObjectId,
+        way: &Vector3<f64>,
+    ) -> (f64, Option<Blame>) {
+        let length_m = way.norm();
+        let (Some(id), Some(start)) = (self.objects.get(object.index()).copied(), from.object(object)) else {
+            return (0.0, None);
+        };
+        let hit = self.with_worker(|worker| {
+            self.allow(from, &Contacts::default(), &mut worker.allowed);
+            self.pose_objects(from, worker);
+            let mut moved = BodySet::EMPTY;
+            moved.insert(id);
+            let others = BodySet::ALL.difference(&self.all_links);
+            let mut s = 0.0;
+            loop {
+                let mut pose = *start;
+                pose.translation.vector += way * if length_m > 0.0 { s / length_m } else { 0.0 };
+                self.model.set_pose(&mut worker.scratch, id, &pose);
+                match self.lower_bound(worker, &moved, &others, self.strictness.cap_m) {
+                    Err(hit) => return Err((s, hit)),
+                    Ok(_) if s >= length_m => return Ok(()),
+                    Ok(free) => s = (s + free.max(self.strictness.clearance_m)).min(length_m),
+                }
+            }
+        });
+        match hit {
+            Ok(()) => (length_m, None),
+            Err((s, hit)) => ((s - self.strictness.clearance_m).max(0.0), Some(self.blame(&hit))),
+        }
+    }
+
+    /// Puts the objects where they are in `state`.
+    fn pose_objects<M: Manipulator>(&self, state: &TabletopState<M>, worker: &mut Worker) {
+        for (id, pose) in self.objects.iter().zip(&state.objects) {
+            self.model.set_pose(&mut worker.scratch, *id, pose);
+        }
+    }
+}
