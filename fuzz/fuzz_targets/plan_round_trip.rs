@@ -50,8 +50,8 @@ impl WaypointSketch {
     fn waypoint(&self) -> Waypoint {
         Waypoint {
             base: self.base,
-            joints: self.joints.iter().cloned().collect(),
-            objects: self.objects.iter().map(|(name, at)| (name.clone(), pose(at))).collect(),
+            joints: self.joints.iter().map(|(name, value)| (name.as_str().into(), *value)).collect(),
+            objects: self.objects.iter().map(|(name, at)| (name.as_str().into(), pose(at))).collect(),
         }
     }
 }

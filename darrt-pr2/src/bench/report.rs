@@ -187,7 +187,7 @@ fn escaped(text: &str) -> String {
 
 const STYLE: &str = "\
 body { margin: 0; background: #fff; color: #1f2933; font: 15px/1.5 system-ui, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif }
-main { max-width: 1100px; margin: 0 auto; padding: 24px 20px 48px }
+main { max-width: 1240px; margin: 0 auto; padding: 24px 20px 48px }
 h1 { font-size: 26px; margin: 0 }
 h2 { font-size: 18px; margin: 36px 0 6px; padding-top: 14px; border-top: 1px solid #cbd2d9 }
 p { margin: 6px 0 10px; max-width: 78ch; color: #3e4c59 }
