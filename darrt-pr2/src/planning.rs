@@ -222,11 +222,7 @@ pub fn prepare_unless(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, P
     prepare_watched(&PlanRequest::new(file.clone(), 0), cancel, &Stopwatch::start())
 }
 
-fn prepare_watched(
-    request: &PlanRequest,
-    cancel: &Cancel,
-    watch: &Arc<Stopwatch>,
-) -> Result<Prepared, PlanningError> {
+fn prepare_watched(request: &PlanRequest, cancel: &Cancel, watch: &Arc<Stopwatch>) -> Result<Prepared, PlanningError> {
     let (file, improve) = (&request.problem, request.improve);
     check_companions(file)?;
     crate::goal_means::check_means(file)?;
