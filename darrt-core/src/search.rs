@@ -74,6 +74,7 @@ pub struct Darrt<'p, D: Domain> {
     node_limit: usize,
     goal_sample: Option<PartialState<D>>,
     nearest_to_goal: f64,
+    is_part: bool,
 }
 
 // Not derived: a sampler is not printable.
@@ -139,6 +140,7 @@ impl<'p, D: Domain> Darrt<'p, D> {
             node_limit: node_limit.min(Tree::<D>::MAX_NODES),
             goal_sample,
             nearest_to_goal: f64::INFINITY,
+            is_part: false,
         };
         darrt.note_distance_to_goal(problem.start());
         darrt
@@ -270,6 +272,9 @@ impl<'p, D: Domain> Darrt<'p, D> {
             let steps = steps.map_err(Unproved::Unsettled)?;
             self.judge(Plan::new(plan.start().clone(), steps)).map_err(Unproved::Refused)?
         };
+        if self.is_part {
+            return Ok(solution);
+        }
         // Nor is a smoother one, or time that runs out over it.
         let smooth =
             smooth(&extender, solution.plan(), self.strategy.smooth, rng).and_then(|plan| self.judge(plan).ok());

@@ -269,14 +269,13 @@ impl<D: Domain> Shared<'_, D> {
     /// what other threads do. `None` if the budget has nothing left for it; the first attempt is always
     /// begun.
     fn share(&self, number: u64) -> Option<u64> {
-        let total = self.options.budget.iterations.unwrap_or(u64::MAX);
-        match self.options.restart_iterations {
-            None => (number == 0).then_some(total),
-            Some(each) => {
-                let used = each.max(1).saturating_mul(number);
-                (number == 0 || used < total).then(|| each.max(1).min(total - used))
-            }
-        }
+        let total = self.options.budget.iterations;
+        let Some(each) = self.options.restart_iterations.map(|each| each.max(1)) else {
+            return (number == 0).then_some(total.unwrap_or(u64::MAX));
+        };
+        let Some(total) = total else { return Some(each) };
+        let used = each.saturating_mul(number);
+        (number == 0 || used < total).then(|| each.min(total - used))
     }
 
     fn is_overtaken(&self, number: u64) -> bool {
@@ -309,7 +308,7 @@ impl<D: Domain> Shared<'_, D> {
         let limit = self.options.budget.nodes.unwrap_or(usize::MAX);
         let ask = || self.stop().or_else(|| self.is_overtaken(number).then_some(Stop::Overtaken));
         let (seed, interrupt) = (self.options.seed, Interrupt::new(&ask));
-        let start = Start { seed, attempt: number, node_limit: limit, interrupt };
+        let start = Start { seed, attempt: number, node_limit: limit, interrupt, is_part: false };
         let mut planner = algorithm.planner(self.problem, strategy, start);
         let mut found = Found { solution: None, last_refusal: None };
         self.tell(&Event::AttemptStarted { attempt: number });

@@ -15,6 +15,7 @@ use darrt_core::problem::Problem;
 use darrt_core::random::{Purpose, stream};
 use darrt_core::sample::{Frontier, GoalBiased, Placed, RobotOrObjects, Sampler};
 use darrt_core::search::{Algorithm, Strategy};
+use darrt_core::smooth::SmoothOptions;
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve, solve_with};
 use darrt_core::space::{ComponentSpace, Place};
 use darrt_core::state::{ComponentSet, ObjectId, State};
@@ -296,4 +297,20 @@ fn the_way_to_the_contact_is_a_distance_and_not_below_the_greedy_tour() {
     longer +=
         u32::from(distance.distance(m, problem.start(), &to) > GreedyVisit.distance(m, problem.start(), &to) + 0.01);
     assert_eq!(longer, 1, "the contact is on the far side");
+}
+
+#[test]
+fn smoothing_changes_the_plan_and_not_the_search() {
+    let problem = problems::two_pucks().unwrap();
+    for algorithm in Algorithm::ALL {
+        let planned = |attempts| {
+            let strategy = Strategy { smooth: SmoothOptions { attempts }, ..paper_strategy().unwrap() };
+            let members = [Member { algorithm, strategy: &strategy }];
+            solve_with(&problem, &members, Until::Solved, &options(3, 20_000), &mut Silent)
+        };
+        let (plain, smooth) = (planned(0), planned(50));
+        assert_eq!(smooth.iterations, plain.iterations, "{algorithm:?}");
+        let steps = |outcome: &Outcome<PuckWorld>| outcome.solution.as_ref().unwrap().plan().steps().len();
+        assert!(steps(&smooth) <= steps(&plain), "{algorithm:?}");
+    }
 }

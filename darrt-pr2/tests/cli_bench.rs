@@ -194,3 +194,18 @@ fn an_interrupt_keeps_what_is_finished() {
     assert!(String::from_utf8(output.stdout).unwrap().contains("1/1"), "what is done is told");
     assert_eq!(runs(&out), ["\"one\"/\"default\"/0"]);
 }
+
+#[test]
+fn the_page_does_not_overwrite_results() {
+    let folder = tempfile::tempdir().unwrap();
+    easy_problems(folder.path());
+    run(folder.path(), &["bench", "one.toml", "--seeds", "1"], 0);
+    for command in [
+        &["bench", "one.toml", "--seeds", "1", "--report", "bench.jsonl"][..],
+        &["bench", "--merge", "bench.jsonl", "--report", "./bench.jsonl"],
+    ] {
+        let (_, complaint) = run(folder.path(), command, 2);
+        assert!(complaint.contains("would be lost"), "{complaint}");
+    }
+    assert_eq!(runs(&folder.path().join("bench.jsonl")).len(), 1);
+}

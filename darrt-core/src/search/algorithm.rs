@@ -47,6 +47,8 @@ pub struct Start<'p> {
     pub node_limit: usize,
     /// Asked within an iteration whether to go on.
     pub interrupt: Interrupt<'p>,
+    /// Does it look for a part of a plan only? The whole is made smoother, not its parts.
+    pub is_part: bool,
 }
 
 /// Which search.
@@ -108,8 +110,8 @@ impl fmt::Display for Algorithm {
 impl<'p, D: Domain> Darrt<'p, D> {
     /// [`Darrt::new`] with everything in one value.
     pub(super) fn begin(problem: &Problem<D>, strategy: &'p Strategy<D>, start: Start<'p>) -> Self {
-        let Start { seed, attempt, node_limit, interrupt } = start;
-        Self::new(problem, strategy, seed, attempt, node_limit).interrupted_by(interrupt)
+        let Start { seed, attempt, node_limit, interrupt, is_part } = start;
+        Self { is_part, ..Self::new(problem, strategy, seed, attempt, node_limit).interrupted_by(interrupt) }
     }
 }
 

@@ -284,7 +284,7 @@ mod tests {
     use crate::testing::puck::{paper_strategy, problems};
 
     fn start(seed: u64) -> Start<'static> {
-        Start { seed, attempt: 0, node_limit: usize::MAX, interrupt: Interrupt::NEVER }
+        Start { seed, attempt: 0, node_limit: usize::MAX, interrupt: Interrupt::NEVER, is_part: false }
     }
 
     #[test]

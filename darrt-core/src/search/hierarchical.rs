@@ -185,7 +185,7 @@ impl<'p, D: Domain> Hierarchical<'p, D> {
 impl Start<'_> {
     /// Where a part begins, with random numbers of its own.
     fn of_part(self, part: u64) -> Self {
-        Self { seed: stream(self.seed, self.attempt, part, Purpose::Attempt).next_u64(), ..self }
+        Self { seed: stream(self.seed, self.attempt, part, Purpose::Attempt).next_u64(), is_part: true, ..self }
     }
 }
 

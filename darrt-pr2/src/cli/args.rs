@@ -71,12 +71,18 @@ Examples:
   darrt plan mine.toml --stats                      see where the attempts end
 
 The same problem, seed and options give the same plan file byte for byte, with any number
-of threads, as long as the time limit is not what ends the search.
+of threads, as long as the time limit is not what ends the search or the smoothing.
 
 Every attempt ends at a restart; --improve and --search portfolio need them, and begin a new
 attempt after 2000 iterations if neither the problem nor --restart says when. The share of an
 attempt in --iterations is all that it may use until its restart, also when it needs less.
-After Ctrl-C, --improve gives the best plan so far.";
+After Ctrl-C, --improve gives the best plan so far, and --smooth the plan as it is then; the
+exit code is 0.
+
+--search portfolio: the first attempt is darrt, then connect, hierarchical, hierarchical-connect
+and so on, so a short --restart brings the others in.
+Travel, here and for --smooth, is a bound on the ways of all points of the robot and of what it
+moves: with less of it the base alone may go farther.";
 
 /// Options of `darrt plan`.
 #[derive(Debug, Args)]
