@@ -11,10 +11,11 @@
 //! | [`solve_with`], several members | a portfolio: the attempts take the members in turn |
 //! | [`solve_with`], [`Until::BudgetEnds`] | anytime: attempts go on, and the cheapest solution is the result |
 
+use std::cmp::Ordering;
 use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 
 use crate::budget::{Budget, Cancel, Clock, Interrupt, Stop};
 use crate::domain::Domain;
@@ -89,10 +90,10 @@ impl Cost {
         }
     }
 
-    fn is_less<D: Domain>(self, a: &Solution<D>, b: &Solution<D>) -> bool {
+    fn compare<D: Domain>(self, a: &Solution<D>, b: &Solution<D>) -> Ordering {
         let of = |solution: &Solution<D>| self.of(solution.plan(), solution.clearance_m());
         let ((a, second), (b, other)) = (of(a), of(b));
-        a.total_cmp(&b).then(second.total_cmp(&other)).is_lt()
+        a.total_cmp(&b).then(second.total_cmp(&other))
     }
 }
 
@@ -227,10 +228,7 @@ pub fn solve_with<D: Domain>(
 /// Keeps the cheapest of the solutions, of equally cheap ones that of the lowest attempt: a long search finds many.
 fn forget_dearer<D: Domain>(done: &mut [Attempt<D>], cost: Cost) {
     let found = done.iter().filter_map(|attempt| Some((attempt.number, attempt.solution.as_ref()?)));
-    let cheapest = found.reduce(|best, next| {
-        let is_better = cost.is_less(next.1, best.1) || (!cost.is_less(best.1, next.1) && next.0 < best.0);
-        if is_better { next } else { best }
-    });
+    let cheapest = found.min_by(|a, b| cost.compare(a.1, b.1).then(a.0.cmp(&b.0)));
     let kept = cheapest.map(|(number, _)| number);
     done.iter_mut().filter(|attempt| Some(attempt.number) != kept).for_each(|attempt| attempt.solution = None);
 }
@@ -239,7 +237,7 @@ impl<D: Domain> Shared<'_, D> {
     /// Takes attempts until there are none left or the budget ends.
     fn work(&self) {
         loop {
-            let number = self.next.fetch_add(1, Ordering::SeqCst);
+            let number = self.next.fetch_add(1, SeqCst);
             let Some(share) = self.share(number) else { return };
             // The first attempt always begins: it costs nothing and says how far the goal is.
             if number > 0 && (self.is_overtaken(number) || self.stop().is_some()) {
@@ -248,7 +246,7 @@ impl<D: Domain> Shared<'_, D> {
             let Some(attempt) = self.attempt(number, share) else { return };
             let improves = self.until != Until::Solved;
             if attempt.solution.is_some() && !improves {
-                self.solved.fetch_min(number, Ordering::SeqCst);
+                self.solved.fetch_min(number, SeqCst);
             }
             let goes_on = matches!(attempt.stop, Stop::Restart)
                 || (attempt.stop == Stop::Solved && improves)
@@ -279,7 +277,7 @@ impl<D: Domain> Shared<'_, D> {
     }
 
     fn is_overtaken(&self, number: u64) -> bool {
-        self.solved.load(Ordering::SeqCst) < number
+        self.solved.load(SeqCst) < number
     }
 
     /// `Some` if time is up or somebody asked for an end.
@@ -406,17 +404,12 @@ impl<D: Domain> Shared<'_, D> {
             outcome.nearest_to_goal = outcome.nearest_to_goal.min(attempt.nearest_to_goal);
             outcome.last_refusal = attempt.last_refusal.or(outcome.last_refusal);
             outcome.stop = attempt.stop;
-            match (attempt.solution, self.until) {
-                (Some(solution), Until::Solved) => {
-                    outcome.solution = Some(solution);
+            // Of those that were to be improved only the cheapest is left.
+            if attempt.solution.is_some() {
+                outcome.solution = attempt.solution;
+                if self.until == Until::Solved {
                     break;
                 }
-                (Some(solution), Until::BudgetEnds(cost)) => {
-                    if outcome.solution.as_ref().is_none_or(|best| cost.is_less(&solution, best)) {
-                        outcome.solution = Some(solution);
-                    }
-                }
-                (None, _) => {}
             }
         }
         if outcome.solution.is_some() {

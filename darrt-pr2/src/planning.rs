@@ -154,7 +154,8 @@ impl AcceptedPlan {
     }
 }
 
-/// The plans that were accepted: one for each thread that came to one, at most; when plans are improved, the cheapest.
+/// The plans that were accepted: one for each thread that came to one, at most, and what it became when it was made smoother;
+/// when plans are improved, the cheapest.
 type Accepted = Arc<Mutex<Vec<AcceptedPlan>>>;
 
 impl Verifier<World> for FileVerifier {

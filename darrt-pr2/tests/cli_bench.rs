@@ -208,4 +208,6 @@ fn the_page_does_not_overwrite_results() {
         assert!(complaint.contains("would be lost"), "{complaint}");
     }
     assert_eq!(runs(&folder.path().join("bench.jsonl")).len(), 1);
+    // Nor those that are not there yet.
+    run(folder.path(), &["bench", "one.toml", "--seeds", "1", "--out", "new.jsonl", "--report", "./new.jsonl"], 2);
 }

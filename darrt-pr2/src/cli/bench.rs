@@ -180,10 +180,13 @@ impl Told {
     fn choose(options: &BenchOptions) -> Result<Self, Failure> {
         let report = options.report.as_deref().map(output::writable).transpose()?;
         let out = options.out.as_deref().unwrap_or(Path::new(DEFAULT_OUT));
-        let is_same =
-            |a: &Path, b: &Path| a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
         if let Some(page) = &report
-            && options.merge.iter().map(PathBuf::as_path).chain([out]).any(|results| is_same(page, results))
+            && options
+                .merge
+                .iter()
+                .map(PathBuf::as_path)
+                .chain([out])
+                .any(|results| output::is_same_file(page, results))
         {
             let text =
                 format!("{}: cannot be both the page and a file of results, which would be lost", page.display());

@@ -66,6 +66,17 @@ pub(super) fn writable(path: &Path) -> Result<PathBuf, Failure> {
     Ok(place)
 }
 
+/// Do both name the same file, whether it is there already or not?
+pub(super) fn is_same_file(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        path.canonicalize().ok().or_else(|| {
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            Some(folder.canonicalize().ok()?.join(path.file_name()?))
+        })
+    };
+    a == b || place(a).is_some_and(|a| place(b) == Some(a))
+}
+
 /// Puts `text` at `path` in one move: whoever looks sees the old file, the whole new one, or none.
 ///
 /// # Errors

@@ -124,15 +124,13 @@ impl Files {
             Some(path) => Some((output::writable(&path)?, Format::of_path(&path)?)),
             None => None,
         };
-        let is_problem = |path: &Path| {
-            asked.canonicalize().is_ok_and(|problem| path.canonicalize().is_ok_and(|path| path == problem))
-        };
+        let is_problem = |path: &Path| asked.exists() && output::is_same_file(asked, path);
         if let Some(path) =
             [Some(&plan), picture.as_ref().map(|(path, _)| path)].into_iter().flatten().find(|p| is_problem(p))
         {
             return Err(Failure::input(format!("{}: is the problem file itself, it would be lost", path.display())));
         }
-        if picture.as_ref().is_some_and(|(path, _)| *path == plan) {
+        if picture.as_ref().is_some_and(|(path, _)| output::is_same_file(path, &plan)) {
             let text = format!("{}: cannot be both the plan and the picture", plan.display());
             return Err(Failure::input(text));
         }

@@ -94,11 +94,19 @@ impl Class {
     /// How far its pairs may have moved before one of them must be looked at, metres. `enough_m`: what a distance must exceed
     /// to be of no interest; it never grows.
     fn next_due_m(&self, enough_m: f64) -> f64 {
-        let ahead_m = AHEAD_PARTS * self.part_m + ROUNDING_M;
-        let apart = self.apart.peek().map_or(f64::INFINITY, |due| due.reserve_m - enough_m);
-        let standing = self.standing.peek().map_or(f64::INFINITY, |due| due.reserve_m);
-        let is_still = self.part_m == 0.0 && apart.min(standing) > f64::NEG_INFINITY;
-        if is_still { f64::INFINITY } else { apart.min(standing) - ahead_m }
+        let first = |pairs: &BinaryHeap<Due>, enough_m| {
+            pairs.peek().map_or(f64::INFINITY, |due| due.since_m(self.part_m, enough_m))
+        };
+        first(&self.apart, enough_m).min(first(&self.standing, 0.0))
+    }
+}
+
+impl Due {
+    /// How far the pairs of its class may have moved before it must be looked at, metres, if they move `part_m` in a part.
+    fn since_m(&self, part_m: f64, enough_m: f64) -> f64 {
+        // Looked at before, and neither has moved to the other since.
+        let is_still = part_m == 0.0 && self.reserve_m > f64::NEG_INFINITY;
+        if is_still { f64::INFINITY } else { self.reserve_m - enough_m - AHEAD_PARTS * part_m - ROUNDING_M }
     }
 }
 
@@ -308,20 +316,14 @@ impl Stage {
         }
         for is_standing in [true, false] {
             let pairs = if is_standing { &mut class.standing } else { &mut class.apart };
-            let ahead_m = AHEAD_PARTS * class.part_m;
             let enough_m = |stage: &Self| if is_standing { 0.0 } else { SOUGHT * stage.nearest_m() };
-            let is_due = |first: &Due, enough_m: f64| {
-                // Looked at before, and neither has moved to the other since.
-                let is_still = class.part_m == 0.0 && first.reserve_m > f64::NEG_INFINITY;
-                !is_still && first.reserve_m - class.travelled_m <= enough_m + ahead_m + ROUNDING_M
-            };
             let mut result = Ok(());
             while let Some(first) = pairs.peek().copied()
                 && let enough_m = enough_m(self)
-                && is_due(&first, enough_m)
+                && class.travelled_m >= first.since_m(class.part_m, enough_m)
             {
                 pairs.pop();
-                match self.look(first.pair, enough_m + ahead_m, step, time) {
+                match self.look(first.pair, enough_m + AHEAD_PARTS * class.part_m, step, time) {
                     Ok(distance_m) => {
                         self.measured.push(Due { reserve_m: class.travelled_m + distance_m, ..first });
                     }
