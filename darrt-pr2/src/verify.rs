@@ -25,6 +25,7 @@ mod motion;
 mod options;
 mod refusal;
 mod robot;
+mod schedule;
 mod solid;
 mod stage;
 mod start;

@@ -4,7 +4,7 @@
 //! and a stance in which the robot stands in a kettle is not worth a chain of motions. Whether a whole motion is free is
 //! the question of [`validity`](crate::validity).
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use darrt_core::state::ObjectId;
 use darrt_core::validity::{Blame, BlockKind};
@@ -57,6 +57,8 @@ pub struct Surroundings {
     hand_links: BodySet,
     finger_links: BodySet,
     all_links: BodySet,
+    /// The links of the base in its frame.
+    base_from_link: OnceLock<Vec<(BodyIndex, Isometry3<f64>)>>,
     workers: Mutex<Vec<Worker>>,
 }
 
@@ -127,6 +129,7 @@ impl Surroundings {
             strictness,
             links,
             objects,
+            base_from_link: OnceLock::new(),
             workers: Mutex::new(Vec::new()),
         })
     }
@@ -146,6 +149,7 @@ impl Surroundings {
             hand_links: self.hand_links,
             finger_links: self.finger_links,
             all_links: self.all_links,
+            base_from_link: OnceLock::new(),
             workers: Mutex::new(Vec::new()),
         }
     }
@@ -166,6 +170,15 @@ impl Surroundings {
     /// The first pair found.
     pub fn check<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, contacts: &Contacts) -> Result<(), Blame> {
         self.check_at(robot, state, contacts, self.strictness.clearance_m)
+    }
+
+    /// [`Surroundings::check`] without reasons, which takes less time where it is asked often.
+    pub fn is_state_clear<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, contacts: &Contacts) -> bool {
+        self.with_worker(|worker| {
+            self.allow(state, contacts, &mut worker.allowed);
+            self.pose_all(robot, state, worker);
+            self.is_clear(worker, &BodySet::ALL, &BodySet::ALL)
+        })
     }
 
     /// [`Surroundings::check`] with the clearance that a motion keeps between the states looked at.
@@ -191,9 +204,22 @@ impl Surroundings {
         let hit = self.with_worker(|worker| {
             self.allow(state, contacts, &mut worker.allowed);
             self.pose_all(robot, state, worker);
-            self.lower_bound_at(worker, &BodySet::ALL, &BodySet::ALL, 0.0, clearance_m)
+            self.first_hit_at(worker, clearance_m)
         });
-        hit.map(|_| ()).map_err(|hit| self.blame(&hit))
+        hit.map_or(Ok(()), |hit| Err(self.blame(&hit)))
+    }
+
+    /// The first pair found that is too near, of all bodies.
+    pub(crate) fn first_hit(&self, worker: &mut Worker) -> Option<Hit> {
+        self.first_hit_at(worker, self.strictness.clearance_m)
+    }
+
+    fn first_hit_at(&self, worker: &mut Worker, clearance_m: f64) -> Option<Hit> {
+        // OPTIMIZATION: mostly there is none, and to find that out takes less time without a reason.
+        if self.is_clear_at(worker, &BodySet::ALL, &BodySet::ALL, clearance_m) {
+            return None;
+        }
+        self.lower_bound_at(worker, &BodySet::ALL, &BodySet::ALL, 0.0, clearance_m).err()
     }
 
     /// Lends a worker to `work`.
@@ -326,9 +352,12 @@ impl Surroundings {
 
     /// Are the pairs of one body in `moved` and one in `against` clear? [`Surroundings::lower_bound`] without reasons.
     pub(crate) fn is_clear(&self, worker: &mut Worker, moved: &BodySet, against: &BodySet) -> bool {
+        self.is_clear_at(worker, moved, against, self.strictness.clearance_m)
+    }
+
+    fn is_clear_at(&self, worker: &mut Worker, moved: &BodySet, against: &BodySet, clearance_m: f64) -> bool {
         let Worker { scratch, allowed, .. } = worker;
-        let clearance = self.strictness.clearance_m;
-        self.model.is_clear(scratch, &Query { moved, against, allowed, clearance, cap: 0.0 })
+        self.model.is_clear(scratch, &Query { moved, against, allowed, clearance: clearance_m, cap: 0.0 })
     }
 
     /// [`Surroundings::lower_bound`] with another clearance.

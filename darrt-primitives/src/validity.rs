@@ -147,7 +147,7 @@ impl SceneValidity {
         instance.motion.at_into(m, f64::MIN_POSITIVE, &mut here);
         around.allow(&here, &instance.contacts, &mut worker.allowed);
         around.pose_all(robot, &here, worker);
-        if let Err(hit) = around.lower_bound(worker, &BodySet::ALL, &BodySet::ALL, 0.0) {
+        if let Some(hit) = around.first_hit(worker) {
             return FreePrefix::blocked(0.0, around.blame(&hit));
         }
         // Fixed pairs are settled; from here on only what moves counts.
@@ -173,10 +173,10 @@ impl SceneValidity {
         instance.motion.at_into(m, 1.0, &mut here);
         around.pose_all(robot, &here, worker);
         around.allow(&here, &instance.contacts, &mut worker.allowed);
-        match around.lower_bound(worker, &BodySet::ALL, &BodySet::ALL, 0.0) {
-            Ok(_) => FreePrefix::FREE,
+        match around.first_hit(worker) {
+            None => FreePrefix::FREE,
             // The end itself is blocked: everything before it is free.
-            Err(hit) => FreePrefix::blocked(1.0 - f64::EPSILON, around.blame(&hit)),
+            Some(hit) => FreePrefix::blocked(1.0 - f64::EPSILON, around.blame(&hit)),
         }
     }
 

@@ -20,8 +20,13 @@ impl CollisionModel {
         let mut is_done = BodySet::EMPTY;
         for body in moved.iter() {
             let registered = &self.bodies[body.get()];
-            let partners = registered.partners.intersection(&self.moving).difference(&is_done);
+            // OPTIMIZATION: only those that are asked for, so that of what moves rigidly together nobody is looked at.
+            let asked = if query.against.contains(body) { query.against.union(query.moved) } else { *query.against };
+            let partners = registered.partners.intersection(&self.moving).difference(&is_done).intersection(&asked);
             is_done.insert(body);
+            if partners.is_empty() {
+                continue;
+            }
             let centre = poses.balls.centre(body.get());
             for other in poses.balls.near(&partners, &centre, reach(body) + registered.radius).iter() {
                 if Self::asked(query, body, other)

@@ -160,8 +160,8 @@ mod tests {
                 to.base = from.base;
             }
             let speeds = approach.speeds(&Segment::new(&from, &to, &robot), &extents, None);
-            robot.link_poses(&from.base, &from.joints, &mut poses.0);
-            robot.link_poses(&to.base, &to.joints, &mut poses.1);
+            robot.link_poses(&from.joints, &mut poses.0);
+            robot.link_poses(&to.joints, &mut poses.1);
             for (i, a) in robot.solids.iter().enumerate().step_by(3) {
                 for b in robot.solids.iter().skip(i + 1).step_by(2) {
                     let distance = |links: &[nalgebra::Isometry3<f64>]| {

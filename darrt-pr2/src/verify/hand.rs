@@ -34,7 +34,7 @@ pub(super) fn check_grip(
         for index in robot.solids_of(tip) {
             let (tip_solid, tip_pose) = stage.link_solid(index);
             name = tip_solid.name();
-            let found = exact(tip_solid, tip_pose, solid, pose).map_err(|e| refuse(e.to_string()))?;
+            let found = exact(tip_solid, &tip_pose, solid, pose).map_err(|e| refuse(e.to_string()))?;
             distance = distance.min(found.distance);
         }
         if distance > options.grip_m {
@@ -104,12 +104,13 @@ impl PushCore {
             for index in robot.solids_of(link) {
                 let (solid, solid_pose) = stage.link_solid(index);
                 // OPTIMIZATION: of what is behind the tips only the depth counts.
-                let placed = || Placed { solid, world_from_solid: solid_pose, centre: solid.world_centre(solid_pose) };
+                let placed =
+                    || Placed { solid, world_from_solid: &solid_pose, centre: solid.world_centre(&solid_pose) };
                 if link != left && link != right && lower_bound(&placed(), &core) > 0.0 {
                     continue;
                 }
                 let refuse = |text: String| site.refusal(time, RefusalKind::Push, text).about(solid.name(), &self.name);
-                let found = clearance::between(&solid.body, solid_pose, &self.core.body, pose);
+                let found = clearance::between(&solid.body, &solid_pose, &self.core.body, pose);
                 let found = found.map_err(|error| refuse(error.to_string()))?;
                 if found.distance <= 0.0 {
                     return Err(refuse(format!("{} presses into {}", solid.name(), self.name)).at(&found.first));

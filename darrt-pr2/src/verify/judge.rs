@@ -15,7 +15,7 @@ use super::mode::{Act, Mode, Permits};
 use super::motion::{Segment, State};
 use super::options::VerifyOptions;
 use super::refusal::{Refusal, RefusalKind, Site};
-use super::robot::Robot;
+use super::robot::{Robot, world_from_robot};
 use super::stage::{PairKind, Rule, Stage};
 use super::world::World;
 use super::{Proof, start};
@@ -36,10 +36,9 @@ pub(super) struct Judge<'a> {
     approach: Approach,
     /// By object.
     modes: Vec<Mode>,
-    /// Poses of all links, overwritten at every state.
+    /// Poses of all links in the frame of the robot's root, overwritten whenever the arm moves.
     links: Vec<Isometry3<f64>>,
-    /// Where the base is in `links` and on the stage.
-    placed_base: Option<[f64; 3]>,
+    world_from_robot: Isometry3<f64>,
     waypoints: usize,
 }
 
@@ -55,6 +54,13 @@ struct Trial<'a> {
     core: Option<PushCore>,
     /// The tool at both ends of a straight line.
     line: Option<[Isometry3<f64>; 2]>,
+}
+
+impl Trial<'_> {
+    /// May states at which no pair need be looked at be left out? In a push and on a straight line every state is looked at.
+    fn skips(&self) -> bool {
+        self.core.is_none() && self.line.is_none()
+    }
 }
 
 /// One segment of a step.
@@ -99,7 +105,7 @@ impl<'a> Judge<'a> {
             approach,
             modes,
             links: Vec::new(),
-            placed_base: None,
+            world_from_robot: Isometry3::identity(),
             waypoints: 0,
         })
     }
@@ -139,9 +145,9 @@ impl<'a> Judge<'a> {
             }
             _ => Rule::Apart,
         });
-        self.robot.link_poses(&state.base, &state.joints, &mut self.links);
-        self.stage.place(&self.robot, &self.links, &state.objects, 0, false);
-        self.placed_base = Some(state.base);
+        self.robot.link_poses(&state.joints, &mut self.links);
+        self.world_from_robot = world_from_robot(&state.base);
+        self.stage.place(&self.world_from_robot, &self.links, &state.objects, 0);
         self.stage.check(0, 0.0).map_err(|hit| {
             let words = format!("{} and {} collide", hit.names.0, hit.names.1);
             refuse(RefusalKind::Collision, words).about(&hit.names.0, &hit.names.1).at(&hit.place)
@@ -222,11 +228,12 @@ impl<'a> Judge<'a> {
             && let (Some(first), Some(last)) = (states.first(), states.last())
         {
             let mut tool = |state: &State| {
-                self.robot.link_poses(&state.base, &state.joints, &mut self.links);
-                self.links[self.robot.tool]
+                self.robot.arm_link_poses(&state.joints, &mut self.links);
+                world_from_robot(&state.base) * self.links[self.robot.tool]
             };
-            line = Some([tool(first), tool(last)]);
-            self.placed_base = None;
+            // The first one last: the step goes on from there.
+            let end = tool(last);
+            line = Some([tool(first), end]);
         }
         let extents = self.robot.extents(held_m);
         let rates = self.robot.travel_rates(&extents);
@@ -238,7 +245,9 @@ impl<'a> Judge<'a> {
         self.check_changes(trial, place, &segment)?;
         let way = trial.act.pushed.and_then(|object| pushed_way(&segment, object));
         let (parts, travel_m) = segment.parts(&trial.rates, self.options);
-        self.stage.set_speeds(&self.approach.speeds(&segment, &trial.extents, trial.act.pushed), parts);
+        let speeds = self.approach.speeds(&segment, &trial.extents, trial.act.pushed);
+        self.stage.set_speeds(&speeds, parts, trial.skips());
+        let arm_moves = from.joints != to.joints;
         let mut now = from.clone();
         let mut i = usize::from(!place.is_first());
         let mut gone = 1;
@@ -249,19 +258,16 @@ impl<'a> Judge<'a> {
                 return Err(trial.site.refusal(time, RefusalKind::Cancelled, "was being judged when it was cancelled"));
             }
             segment.robot_at(s, &mut now);
-            // OPTIMIZATION: most of the robot stands while it does not drive. Other joints than the arm's have not changed.
-            let arm_only = self.placed_base == Some(now.base);
-            self.placed_base = Some(now.base);
-            if arm_only {
+            self.world_from_robot = world_from_robot(&now.base);
+            // Other joints than the arm's do not change.
+            if arm_moves {
                 self.robot.arm_link_poses(&now.joints, &mut self.links);
-            } else {
-                self.robot.link_poses(&now.base, &now.joints, &mut self.links);
             }
             self.move_objects(trial, &segment, s, &mut now);
             if i == 0 || i == parts {
                 self.check_rigid(trial, time, &now, if i == 0 { from } else { to })?;
             }
-            self.stage.place(&self.robot, &self.links, &now.objects, gone, arm_only);
+            self.stage.place(&self.world_from_robot, &self.links, &now.objects, gone);
             self.check_state(trial, time, &now, way)?;
             // OPTIMIZATION: states at which nothing would be looked at need not be made. The end always is.
             let next = (i + 1 + self.idle_parts(trial, &now, travel_m, parts)).min(parts.max(i + 1));

@@ -56,8 +56,6 @@ pub(super) struct Robot {
     pub(super) finger_joint: usize,
     /// Links that move with the manipulating arm or its fingers, in ascending order.
     arm_links: Vec<usize>,
-    /// Their solids: indices into `solids`.
-    pub(super) arm_solids: Vec<usize>,
 }
 
 impl Robot {
@@ -105,22 +103,7 @@ impl Robot {
         let self_pairs = self_pairs(&tree, &solids, side);
         let table = JointTable::new(&description, &tree);
         let arm_links = arm_links(&tree, &roles);
-        let on_arm = |(_, solid): &(usize, &LinkSolid)| arm_links.contains(&solid.link);
-        let arm_solids = solids.iter().enumerate().filter(on_arm).map(|(index, _)| index).collect();
-        Ok(Self {
-            tree,
-            table,
-            solids,
-            self_pairs,
-            roles,
-            limits,
-            side,
-            tool,
-            fingers,
-            finger_joint,
-            arm_links,
-            arm_solids,
-        })
+        Ok(Self { tree, table, solids, self_pairs, roles, limits, side, tool, fingers, finger_joint, arm_links })
     }
 
     /// Name of a variable's joint.
@@ -143,13 +126,11 @@ impl Robot {
         self.solids.iter().enumerate().filter(move |(_, solid)| solid.link == link).map(|(index, _)| index)
     }
 
-    /// Writes the world pose of every link.
-    pub(super) fn link_poses(&self, base: &[f64; 3], joints: &[f64], out: &mut Vec<Isometry3<f64>>) {
+    /// Writes the pose of every link in the frame of the robot's root.
+    pub(super) fn link_poses(&self, joints: &[f64], out: &mut Vec<Isometry3<f64>>) {
         out.resize(self.tree.link_count(), Isometry3::identity());
-        let [x, y, yaw] = *base;
-        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
         // Both slices have the tree's own lengths.
-        let written = self.tree.forward(joints, &Isometry3::from_parts(Translation3::new(x, y, 0.0), turn), out);
+        let written = self.tree.forward(joints, &Isometry3::identity(), out);
         debug_assert!(written.is_ok(), "{written:?}");
     }
 
@@ -221,6 +202,12 @@ fn arm_links(tree: &KinematicTree, roles: &[Role]) -> Vec<usize> {
     is_moved.iter().enumerate().filter(|(_, is_moved)| **is_moved).map(|(link, _)| link).collect()
 }
 
+/// Where a base at x, y and yaw has the robot's root.
+pub(super) fn world_from_robot(base: &[f64; 3]) -> Isometry3<f64> {
+    let [x, y, yaw] = *base;
+    Isometry3::from_parts(Translation3::new(x, y, 0.0), UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw))
+}
+
 /// Pairs of solids of links that can meet while the arm on `side` moves.
 fn self_pairs(tree: &KinematicTree, solids: &[LinkSolid], side: Side) -> Vec<(usize, usize)> {
     let mut pairs = Vec::new();
@@ -250,8 +237,9 @@ mod tests {
             let values: Vec<f64> =
                 robot.limits.iter().map(|l| rng.random_range(l.lower.max(-3.0)..l.upper.min(3.0))).collect();
             let moved: Vec<f64> = values.iter().map(|v| v + rng.random_range(-0.05..0.05)).collect();
-            robot.link_poses(&[0.0; 3], &values, &mut before);
-            robot.link_poses(&[0.1, 0.0, 0.02], &moved, &mut after);
+            robot.link_poses(&values, &mut before);
+            robot.link_poses(&moved, &mut after);
+            after.iter_mut().for_each(|pose| *pose = world_from_robot(&[0.1, 0.0, 0.02]) * *pose);
             let bound = 0.1
                 + 0.02 * rates[values.len()]
                 + values.iter().zip(&moved).zip(&rates).map(|((a, b), r)| (a - b).abs() * r).sum::<f64>();
@@ -270,19 +258,20 @@ mod tests {
     fn the_links_of_the_arm_are_all_that_an_arm_moves() {
         let robot = Robot::new(&builtin("plate1").unwrap()).unwrap();
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(10);
-        let (base, mut now, mut anew) = ([0.3, -0.2, 1.0], Vec::new(), Vec::new());
+        let (mut now, mut anew) = (Vec::new(), Vec::new());
         let mut values: Vec<f64> = robot.limits.iter().map(|limit| limit.clamp(0.0)).collect();
-        robot.link_poses(&base, &values, &mut now);
+        robot.link_poses(&values, &mut now);
         for _ in 0..100 {
             let own =
                 values.iter_mut().zip(&robot.roles).zip(&robot.limits).filter(|((_, role), _)| **role != Role::Parked);
             own.for_each(|((value, _), limit)| *value = rng.random_range(limit.lower.max(-3.0)..limit.upper.min(3.0)));
             robot.arm_link_poses(&values, &mut now);
-            robot.link_poses(&base, &values, &mut anew);
+            robot.link_poses(&values, &mut anew);
             assert_eq!(now, anew);
         }
-        let others = robot.solids.len() - robot.arm_solids.len();
-        assert!(robot.arm_solids.len() > 10 && others > 10, "{} of the arm, {others} others", robot.arm_solids.len());
+        let of_arm = robot.arm_links.len();
+        let others = robot.tree.link_count() - of_arm;
+        assert!(of_arm > 10 && others > 10, "{of_arm} of the arm, {others} others");
     }
 
     #[test]

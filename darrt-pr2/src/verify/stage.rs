@@ -1,24 +1,17 @@
 //! All solids at their places, and which pairs may not touch.
 
-use std::cmp::Ordering;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 
 use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::approach::{Movers, Speeds};
 use super::robot::Robot;
+use super::schedule::{AHEAD_PARTS, Class, Due, Pairs, ROUNDING_M, smaller};
 use super::solid::{Placed, Solid, exact, gap_across, lower_bound};
 use super::world::World;
 
 /// Slack on top of the depth to which an object may press into what carries it, metres.
 const LIFT_SLACK_M: f64 = 1e-4;
-
-/// How far measured distances and travels may be off, metres.
-const ROUNDING_M: f64 = 1e-6;
-
-/// A pair is looked at again when it would have to be within this many parts of a segment: so that many parts at once need
-/// no look at anything.
-const AHEAD_PARTS: f64 = 10.0;
 
 /// Part of the smallest distance seen so far below which a pair is looked at again, though it cannot touch yet. The smallest
 /// clearance is known to within this part.
@@ -66,71 +59,6 @@ struct Pair {
     apart_m: f64,
 }
 
-/// When a pair must be looked at again.
-#[derive(Debug, Clone, Copy)]
-struct Due {
-    /// Distance of the pair when last measured, plus what [`Class::travelled_m`] was then.
-    reserve_m: f64,
-    pair: usize,
-}
-
-/// Pairs of solids that the same joints move towards each other.
-#[derive(Debug, Default)]
-struct Class {
-    between: Movers,
-    /// The pairs that may not touch, the most urgent first.
-    apart: BinaryHeap<Due>,
-    /// The pairs of which one stands on the other.
-    standing: BinaryHeap<Due>,
-    /// Bound on how far the two of a pair have moved towards each other since the rules were set, metres.
-    travelled_m: f64,
-    /// The same in one part of this segment.
-    part_m: f64,
-    /// No pair need be looked at before they have moved so far.
-    due_m: f64,
-}
-
-impl Class {
-    /// How far its pairs may have moved before one of them must be looked at, metres. `enough_m`: what a distance must exceed
-    /// to be of no interest; it never grows.
-    fn next_due_m(&self, enough_m: f64) -> f64 {
-        let first = |pairs: &BinaryHeap<Due>, enough_m| {
-            pairs.peek().map_or(f64::INFINITY, |due| due.since_m(self.part_m, enough_m))
-        };
-        first(&self.apart, enough_m).min(first(&self.standing, 0.0))
-    }
-}
-
-impl Due {
-    /// How far the pairs of its class may have moved before it must be looked at, metres, if they move `part_m` in a part.
-    fn since_m(&self, part_m: f64, enough_m: f64) -> f64 {
-        // Looked at before, and neither has moved to the other since.
-        let is_still = part_m == 0.0 && self.reserve_m > f64::NEG_INFINITY;
-        if is_still { f64::INFINITY } else { self.reserve_m - enough_m - AHEAD_PARTS * part_m - ROUNDING_M }
-    }
-}
-
-impl Ord for Due {
-    /// The greatest is the first to be looked at.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.reserve_m.total_cmp(&self.reserve_m).then(other.pair.cmp(&self.pair))
-    }
-}
-
-impl PartialOrd for Due {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Due {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Due {}
-
 /// Two solids that touch and may not.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Hit {
@@ -163,8 +91,14 @@ pub(super) struct Stage {
     /// By solid.
     movers: Vec<Movers>,
     classes: Vec<Class>,
-    /// Those that were looked at in this check.
-    measured: Vec<Due>,
+    /// By solid of the robot: its link, and its place there.
+    mounts: Vec<(usize, Isometry3<f64>)>,
+    world_from_robot: Isometry3<f64>,
+    /// By link.
+    robot_from_link: Vec<Isometry3<f64>>,
+    /// How often everything was placed anew, and by solid of the robot when `poses` last took note.
+    moment: u64,
+    noted: Vec<u64>,
     links: usize,
     objects: usize,
     lift_m: f64,
@@ -203,7 +137,11 @@ impl Stage {
         Self {
             movers: vec![Movers::NONE; solids.len()],
             classes: Vec::new(),
-            measured: Vec::new(),
+            mounts: robot.solids.iter().map(|s| (s.link, s.link_from_solid)).collect(),
+            world_from_robot: Isometry3::identity(),
+            robot_from_link: vec![Isometry3::identity(); robot.tree.link_count()],
+            moment: 0,
+            noted: vec![0; links],
             centres: solids.iter().zip(&poses).map(|(solid, pose)| solid.world_centre(pose)).collect(),
             solids,
             poses,
@@ -234,7 +172,7 @@ impl Stage {
     pub(super) fn set_rules(&mut self, rule: impl Fn(PairKind) -> Rule) {
         let mut known = vec![(Movers::NONE, f64::NEG_INFINITY); self.pairs.len()];
         for class in std::mem::take(&mut self.classes) {
-            for due in class.apart.iter().chain(&class.standing) {
+            for due in class.apart.dues.iter().chain(&class.standing.dues) {
                 known[due.pair] = (class.between, due.reserve_m - class.travelled_m);
             }
         }
@@ -253,43 +191,38 @@ impl Stage {
         }
         let class = |(between, [apart, standing]): (Movers, [Vec<Due>; 2])| Class {
             between,
-            apart: apart.into(),
-            standing: standing.into(),
+            apart: Pairs::new(apart),
+            standing: Pairs::new(standing),
             ..Class::default()
         };
         self.classes = dues.into_iter().map(class).collect();
     }
 
-    /// Says how fast things move in the segment that begins here, which has `parts` equal parts.
-    pub(super) fn set_speeds(&mut self, speeds: &Speeds, parts: usize) {
+    /// Says how fast things move in the segment that begins here, which has `parts` equal parts. `skips`: states at which
+    /// nothing need be looked at are left out ([`Stage::idle_parts`]).
+    pub(super) fn set_speeds(&mut self, speeds: &Speeds, parts: usize, skips: bool) {
         for class in &mut self.classes {
             class.part_m = speeds.of(class.between) / parts.max(1) as f64;
+            class.ahead_m = if skips { AHEAD_PARTS * class.part_m } else { 0.0 };
             class.due_m = f64::NEG_INFINITY;
         }
     }
 
-    /// Puts links and objects at their places, `parts` parts of the segment farther on; `arm_only`: of the links only those of
-    /// the arm have moved.
+    /// Puts links and objects at their places, `parts` parts of the segment farther on. `robot_from_link` stands by link;
+    /// there are as many as the robot has.
     pub(super) fn place(
         &mut self,
-        robot: &Robot,
-        links: &[Isometry3<f64>],
+        world_from_robot: &Isometry3<f64>,
+        robot_from_link: &[Isometry3<f64>],
         objects: &[Isometry3<f64>],
         parts: usize,
-        arm_only: bool,
     ) {
         for class in &mut self.classes {
             class.travelled_m += class.part_m * parts as f64;
         }
-        let of_link = |index: usize| {
-            let solid = &robot.solids[index];
-            links.get(solid.link).map_or(solid.link_from_solid, |link| link * solid.link_from_solid)
-        };
-        if arm_only {
-            robot.arm_solids.iter().for_each(|index| self.put(*index, of_link(*index)));
-        } else {
-            (0..robot.solids.len()).for_each(|index| self.put(index, of_link(index)));
-        }
+        self.moment += 1;
+        self.world_from_robot = *world_from_robot;
+        self.robot_from_link.copy_from_slice(robot_from_link);
         for (object, pose) in objects.iter().enumerate() {
             self.put(self.links + object, *pose);
         }
@@ -298,6 +231,20 @@ impl Stage {
     fn put(&mut self, solid: usize, world_from_solid: Isometry3<f64>) {
         self.centres[solid] = self.solids[solid].world_centre(&world_from_solid);
         self.poses[solid] = world_from_solid;
+    }
+
+    /// Takes note of where a solid of the robot is now.
+    fn note(&mut self, solid: usize) {
+        // OPTIMIZATION: of most solids nobody asks at most states.
+        if self.noted.get(solid).is_some_and(|noted| *noted != self.moment) {
+            self.noted[solid] = self.moment;
+            self.put(solid, self.world_from_link_solid(solid));
+        }
+    }
+
+    fn world_from_link_solid(&self, solid: usize) -> Isometry3<f64> {
+        let (link, link_from_solid) = &self.mounts[solid];
+        self.world_from_robot * (self.robot_from_link[*link] * link_from_solid)
     }
 
     /// Looks at every pair that could touch, or be nearer than any other was, since it was last looked at.
@@ -314,32 +261,47 @@ impl Stage {
         if class.travelled_m < class.due_m {
             return Ok(());
         }
+        class.due_m = f64::INFINITY;
         for is_standing in [true, false] {
-            let pairs = if is_standing { &mut class.standing } else { &mut class.apart };
-            let enough_m = |stage: &Self| if is_standing { 0.0 } else { SOUGHT * stage.nearest_m() };
-            let mut result = Ok(());
-            while let Some(first) = pairs.peek().copied()
-                && let enough_m = enough_m(self)
-                && class.travelled_m >= first.since_m(class.part_m, enough_m)
-            {
-                pairs.pop();
-                match self.look(first.pair, enough_m + AHEAD_PARTS * class.part_m, step, time) {
-                    Ok(distance_m) => {
-                        self.measured.push(Due { reserve_m: class.travelled_m + distance_m, ..first });
-                    }
-                    Err(hit) => {
-                        result = Err(hit);
-                        break;
-                    }
-                }
-            }
-            // OPTIMIZATION: mostly none is due, and the heap would be looked through in vain.
-            if !self.measured.is_empty() {
-                pairs.extend(self.measured.drain(..));
-            }
+            let mut pairs = std::mem::take(class.pairs_mut(is_standing));
+            let result = self.check_pairs(class, &mut pairs, is_standing, step, time);
+            *class.pairs_mut(is_standing) = pairs;
             result?;
         }
-        class.due_m = class.next_due_m(SOUGHT * self.nearest_m());
+        Ok(())
+    }
+
+    /// Looks at those of the class's `pairs` that are due, and finds out when the next one is.
+    fn check_pairs(
+        &mut self,
+        class: &mut Class,
+        pairs: &mut Pairs,
+        is_standing: bool,
+        step: u32,
+        time: f64,
+    ) -> Result<(), Hit> {
+        let of_interest_m = |stage: &Self| if is_standing { 0.0 } else { SOUGHT * stage.nearest_m() };
+        // A pair is due when its reserve is no more than this.
+        let due_m = |enough_m: f64| class.travelled_m + enough_m + class.ahead_m + ROUNDING_M;
+        let first_due_m = due_m(of_interest_m(self));
+        if class.travelled_m >= pairs.sorted_until_m || first_due_m >= pairs.least_m[1] {
+            pairs.sort(class.travelled_m, first_due_m);
+        }
+        let mut least_m = f64::INFINITY;
+        for due in &mut pairs.dues[..pairs.near] {
+            let enough_m = of_interest_m(self);
+            // Not one that was looked at before, if neither has moved to the other since.
+            if due.reserve_m <= due_m(enough_m) && (class.part_m > 0.0 || due.reserve_m == f64::NEG_INFINITY) {
+                let sought_m = enough_m + AHEAD_PARTS * class.part_m;
+                due.reserve_m = class.travelled_m + self.look(due.pair, sought_m, step, time)?;
+            }
+            least_m = smaller(least_m, due.reserve_m);
+        }
+        pairs.least_m[0] = least_m;
+        if class.part_m > 0.0 {
+            let spare_m = pairs.least_m() - due_m(of_interest_m(self));
+            class.due_m = class.due_m.min(class.travelled_m + spare_m);
+        }
         Ok(())
     }
 
@@ -353,9 +315,8 @@ impl Stage {
         let nearest_m = self.nearest_m();
         let moving = self.classes.iter().filter(|class| class.part_m > 0.0);
         let parts = moving.map(|class| {
-            let apart = class.apart.peek().map_or(f64::INFINITY, |due| due.reserve_m - SOUGHT * nearest_m);
-            let standing = class.standing.peek().map_or(f64::INFINITY, |due| due.reserve_m);
-            (apart.min(standing) - class.travelled_m - ROUNDING_M) / class.part_m
+            let apart_m = class.apart.least_m() - SOUGHT * nearest_m;
+            (apart_m.min(class.standing.least_m()) - class.travelled_m - ROUNDING_M) / class.part_m
         });
         parts.fold(f64::INFINITY, f64::min).max(0.0)
     }
@@ -363,8 +324,9 @@ impl Stage {
     /// Looks at one pair: a lower bound of its distance that is above 0 and, if it may be the smallest so far, exact.
     fn look(&mut self, index: usize, enough_m: f64, step: u32, time: f64) -> Result<f64, Hit> {
         let nearest = self.nearest_m();
+        let Pair { a, b, .. } = self.pairs[index];
+        [a, b].into_iter().for_each(|solid| self.note(solid));
         let pair = &self.pairs[index];
-        let (a, b) = (pair.a, pair.b);
         let (solid_a, solid_b) = (&self.solids[a], &self.solids[b]);
         let mut lifted = self.poses[a];
         let mut placed_a = Placed { solid: solid_a, world_from_solid: &self.poses[a], centre: self.centres[a] };
@@ -411,7 +373,7 @@ impl Stage {
     }
 
     /// The solid and the pose of one of the robot's solids.
-    pub(super) fn link_solid(&self, index: usize) -> (&Solid, &Isometry3<f64>) {
-        (&self.solids[index], &self.poses[index])
+    pub(super) fn link_solid(&self, index: usize) -> (&Solid, Isometry3<f64>) {
+        (&self.solids[index], self.world_from_link_solid(index))
     }
 }

@@ -129,7 +129,7 @@ fn way_of<M: Manipulator>(
     picking: &Picking<'_>,
     movable: &Movable,
     probe: &mut Probe<'_, M>,
-) -> Result<Way<M::Joints>, Refused> {
+) -> Result<Way<M::Joints>, Refused<M>> {
     let Picking { object, grasp, at_grasp, .. } = *picking;
     let open = straddling(object, grasp);
     probe.check(q, &open)?;
@@ -155,12 +155,12 @@ fn check_lifted<M: Manipulator>(
     picking: &Picking<'_>,
     lifted: &Configuration<M::Joints>,
     probe: &Probe<'_, M>,
-) -> Result<(), Refused> {
+) -> Result<(), Refused<M>> {
     let beside = probe.state().mode.clone();
     let tool_from_object = picking.at_grasp.inverse() * picking.pose;
     let held = Held { object: picking.object, tool_from_object };
     let mode = beside.attached(held, picking.grasp.closed_gap_m).ok_or(Refused::Unreachable)?;
-    Ok(Probe::new(m, probe.state(), mode).check(lifted, &Contacts::default())?)
+    Probe::new(m, probe.state(), mode).check(lifted, &Contacts::default())
 }
 
 fn assemble<M: Manipulator>(

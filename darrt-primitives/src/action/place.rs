@@ -116,7 +116,7 @@ fn way_of<M: Manipulator>(
     at_place: &Isometry3<f64>,
     direction: &Vector3<f64>,
     before: &mut Probe<'_, M>,
-) -> Result<Way<M::Joints>, Refused> {
+) -> Result<Way<M::Joints>, Refused<M>> {
     let out = line::follow(m, &q.base, &q.arm, at_place, &(-direction * m.settings().place.approach_m));
     if out.share < m.settings().least_line_share {
         return Err(Refused::Unreachable);

@@ -141,7 +141,7 @@ fn way_of<M: Manipulator>(
     q: &Configuration<M::Joints>,
     push: &Pushing<'_>,
     probe: &mut Probe<'_, M>,
-) -> Result<Way<M::Joints>, Refused> {
+) -> Result<Way<M::Joints>, Refused<M>> {
     let settings = &m.settings().push;
     let Pushing { at_contact, end, .. } = push;
     let touching = contacts(push.object);

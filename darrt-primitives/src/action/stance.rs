@@ -28,17 +28,27 @@ pub struct Wanted<'a> {
 }
 
 /// Why a stance will not do.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Refused {
+#[derive(Debug)]
+pub enum Refused<M: Manipulator> {
     /// The arm does not reach far enough from there.
     Unreachable,
     /// Something is in the way.
-    Blocked(Blame),
+    Blocked(Box<Blocked<M>>),
 }
 
-impl From<Blame> for Refused {
-    fn from(blame: Blame) -> Self {
-        Self::Blocked(blame)
+/// A state in which something is in the way. What it is, is found out when somebody asks: of all the stances that are refused
+/// only the last one is asked about.
+#[derive(Debug)]
+pub struct Blocked<M: Manipulator> {
+    state: TabletopState<M>,
+    contacts: Contacts,
+}
+
+impl<M: Manipulator> Blocked<M> {
+    /// What is in the way.
+    fn why(&self, m: &Tabletop<M>) -> Infeasible {
+        let found = m.surroundings().check(m.manipulator(), &self.state, &self.contacts);
+        found.err().map_or(Infeasible::Unreachable, Infeasible::Blocked)
     }
 }
 
@@ -53,14 +63,14 @@ pub fn stance<M: Manipulator, T>(
     from: &TabletopState<M>,
     wanted: &Wanted<'_>,
     rng: &mut dyn Rng,
-    mut accept: impl FnMut(&Configuration<M::Joints>) -> Result<T, Refused>,
+    mut accept: impl FnMut(&Configuration<M::Joints>) -> Result<T, Refused<M>>,
 ) -> Result<T, Infeasible> {
     let robot = m.manipulator();
     let Wanted { world_from_tool, tries } = *wanted;
     let [empty, loaded] = m.settings().drives;
     let drives = if from.mode.held().is_some() { loaded } else { empty };
     let stays = !drives || rng.random_bool(0.5);
-    let mut why = Infeasible::Unreachable;
+    let mut blocked = None;
     for attempt in 0..tries {
         let base =
             if !drives || (stays && attempt == 0) { from.robot.base } else { robot.base_for(world_from_tool, rng) };
@@ -75,19 +85,19 @@ pub fn stance<M: Manipulator, T>(
             let Some(arm) = robot.inverse(&base, world_from_tool, rng) else { break };
             match accept(&Configuration { base, arm }) {
                 Ok(found) => return Ok(found),
-                Err(Refused::Blocked(blame)) => why = Infeasible::Blocked(blame),
+                Err(Refused::Blocked(last)) => blocked = Some(last),
                 Err(Refused::Unreachable) => {}
             }
         }
     }
-    Err(why)
+    Err(blocked.map_or(Infeasible::Unreachable, |last| last.why(m)))
 }
 
 /// The robot at `base` with its arm at the end of a line that may have none.
 ///
 /// # Errors
 /// [`Refused::Unreachable`] if there is no such arm configuration.
-pub fn at_end<J: Copy>(base: [f64; 3], arms: &[J]) -> Result<Configuration<J>, Refused> {
+pub fn at_end<M: Manipulator>(base: [f64; 3], arms: &[M::Joints]) -> Result<Configuration<M::Joints>, Refused<M>> {
     arms.last().map(|arm| Configuration { base, arm: *arm }).ok_or(Refused::Unreachable)
 }
 
@@ -138,10 +148,7 @@ impl<'a, M: Manipulator> Probe<'a, M> {
     }
 
     /// Is nothing in the way with the robot at `q`, what it holds in its hand?
-    ///
-    /// # Errors
-    /// What is.
-    pub fn check(&mut self, q: &Configuration<M::Joints>, contacts: &Contacts) -> Result<(), Blame> {
+    pub fn is_clear(&mut self, q: &Configuration<M::Joints>, contacts: &Contacts) -> bool {
         let robot = self.m.manipulator();
         self.state.robot = *q;
         if let Some(held) = self.state.mode.held().copied()
@@ -149,6 +156,17 @@ impl<'a, M: Manipulator> Probe<'a, M> {
         {
             *pose = robot.world_from_tool(q) * held.tool_from_object;
         }
-        self.m.surroundings().check(robot, &self.state, contacts)
+        self.m.surroundings().is_state_clear(robot, &self.state, contacts)
+    }
+
+    /// [`Probe::is_clear`] as a reason to refuse a stance.
+    ///
+    /// # Errors
+    /// [`Refused::Blocked`] with the state asked about.
+    pub fn check(&mut self, q: &Configuration<M::Joints>, contacts: &Contacts) -> Result<(), Refused<M>> {
+        if self.is_clear(q, contacts) {
+            return Ok(());
+        }
+        Err(Refused::Blocked(Box::new(Blocked { state: self.state.clone(), contacts: *contacts })))
     }
 }

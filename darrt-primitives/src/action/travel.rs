@@ -52,7 +52,7 @@ fn clear_posture<M: Manipulator>(
 ) -> Option<M::Joints> {
     let mut probe = Probe::new(m, &chain.end, chain.end.mode.clone());
     let mut is_clear =
-        |base: [f64; 3], arm: M::Joints| probe.check(&Configuration { base, arm }, &Contacts::default()).is_ok();
+        |base: [f64; 3], arm: M::Joints| probe.is_clear(&Configuration { base, arm }, &Contacts::default());
     let postures = &m.settings().postures;
     let first = if postures.is_empty() { 0 } else { rng.random_range(0..postures.len()) };
     let turned = postures.iter().cycle().skip(first).take(postures.len());

@@ -6,7 +6,7 @@ use darrt_core::state::ObjectId;
 use darrt_core::validity::Blame;
 use darrt_geom::allowed::AllowedContacts;
 use darrt_geom::body_set::{BodyIndex, BodySet};
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use super::{Surroundings, Worker};
 use crate::manipulator::{Configuration, Manipulator};
@@ -22,12 +22,20 @@ pub struct Hand {
 impl Surroundings {
     /// Do base, trunk and whatever else is rigid to the base keep clear of the fixed bodies? Asks nothing of the arm.
     pub fn is_base_clear<M: Manipulator>(&self, robot: &M, q: &Configuration<M::Joints>) -> bool {
+        // OPTIMIZATION: the arm's links need no places here.
+        let base_from_link = self.base_from_link.get_or_init(|| {
+            let mut poses = vec![Isometry3::identity(); self.links.len()];
+            robot.link_poses(&Configuration { base: [0.0; 3], arm: q.arm }, robot.hand().max_gap_m(), &mut poses);
+            let of_base = self.links.iter().copied().zip(poses).filter(|(id, _)| self.base_links.contains(*id));
+            of_base.collect()
+        });
+        let [x, y, yaw] = q.base;
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
+        let world_from_base = Isometry3::from_parts(Vector3::new(x, y, 0.0).into(), turn);
         self.with_worker(|worker| {
             worker.allowed = AllowedContacts::none();
-            let (link_poses, _) = worker.poses.split_at_mut(self.links.len());
-            robot.link_poses(q, robot.hand().max_gap_m(), link_poses);
-            for (id, pose) in self.links.iter().zip(link_poses.iter()) {
-                self.model.set_pose(&mut worker.scratch, *id, pose);
+            for (id, base_from_link) in base_from_link {
+                self.model.set_pose(&mut worker.scratch, *id, &(world_from_base * base_from_link));
             }
             // What the arm does and where the objects are does not count.
             let against = BodySet::ALL.difference(self.model.moving());

@@ -9,12 +9,16 @@ use crate::verify::refusal::{Refusal, RefusalKind, Site};
 use crate::verify::stage::Hit;
 
 impl<'a> Judge<'a> {
+    fn world_from_tool(&self) -> Isometry3<f64> {
+        self.world_from_robot * self.links[self.robot.tool]
+    }
+
     /// Puts the objects where they are at `s`: held ones by the hand, pushed ones along their way.
     pub(super) fn move_objects(&self, trial: &Trial<'a>, segment: &Segment<'_>, s: f64, now: &mut State) {
         if let Some(holding) = trial.act.holding
             && let Some(pose) = now.objects.get_mut(holding.object)
         {
-            *pose = self.links[self.robot.tool] * holding.tool_from_object;
+            *pose = self.world_from_tool() * holding.tool_from_object;
         }
         if let Some(object) = trial.act.pushed
             && let (Some(pose), Some(slid)) = (now.objects.get_mut(object), segment.slid(object, s))
@@ -84,7 +88,7 @@ impl<'a> Judge<'a> {
         reason = "clamped to a range that fits any usize"
     )]
     pub(super) fn idle_parts(&self, trial: &Trial<'a>, now: &State, travel_m: f64, parts: usize) -> usize {
-        if trial.core.is_some() || trial.line.is_some() {
+        if !trial.skips() {
             return 0;
         }
         let held = trial.act.holding.and_then(|holding| now.objects.get(holding.object));
@@ -114,7 +118,7 @@ impl<'a> Judge<'a> {
         start: &Isometry3<f64>,
         end: &Isometry3<f64>,
     ) -> Result<(), Refusal> {
-        let tool = &self.links[self.robot.tool];
+        let tool = self.world_from_tool();
         let (from, way) = (start.translation.vector, end.translation.vector - start.translation.vector);
         let gone = tool.translation.vector - from;
         let share = if way.norm() > 0.0 { (gone.dot(&way) / way.norm_squared()).clamp(0.0, 1.0) } else { 0.0 };
