@@ -21,7 +21,7 @@ use darrt_primitives::detour::Detour;
 use darrt_primitives::validity::SceneValidity;
 
 use crate::export::Exporter;
-use crate::plan_file::{PlanFile, PlannerFacts, Step};
+use crate::plan_file::{PlanFile, PlannerFacts, SearchName, Step};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{DistanceName, PrimitiveName, ProblemFile, SamplerName, Sampling};
 use crate::stopwatch::{Stopwatch, Timed, Times, Watched};
@@ -141,14 +141,7 @@ struct Judged {
 
 impl Verifier<World> for FileVerifier {
     fn verify(&self, m: &World, _: &WorldState, _: &dyn Goal<World>, plan: &Plan<World>) -> Result<Verified, Refusal> {
-        let nobody = PlannerFacts {
-            sampler: SamplerName::default(),
-            distance: DistanceName::default(),
-            iterations: 0,
-            restarts: 0,
-            nodes: 0,
-        };
-        let file = self.exporter.export(m, plan, 0, nobody);
+        let file = self.exporter.export(m, plan, 0, PlannerFacts::default());
         let verdict = self.watch.verification(|| verify_unless(&file, &VerifyOptions::default(), &self.cancel));
         let proof = verdict.map_err(|refusal| Refusal { step: None, at: 0.0, reason: refusal.to_string() })?;
         let clearance_m = proof.smallest_clearance.as_ref().map(|smallest| smallest.distance_m);
@@ -256,8 +249,16 @@ fn result(
     (sampler, distance): (SamplerName, DistanceName),
     outcome: Outcome<World>,
 ) -> PlanResult {
-    let nodes = outcome.nodes as u64;
-    let facts = PlannerFacts { sampler, distance, iterations: outcome.iterations, restarts: outcome.restarts, nodes };
+    let facts = PlannerFacts {
+        sampler,
+        distance,
+        searches: request.algorithms.iter().filter_map(|algorithm| SearchName::of(*algorithm)).collect(),
+        improve: request.improve.map(Into::into),
+        smooth: request.smooth as u64,
+        iterations: outcome.iterations,
+        restarts: outcome.restarts,
+        nodes: outcome.nodes as u64,
+    };
     let m = prepared.problem.domain();
     let judged = outcome.solution.as_ref().and_then(|solution| {
         let judged = solution.verified().evidence.as_ref()?.downcast_ref::<Judged>()?;
