@@ -11,7 +11,7 @@ use crate::random::{Purpose, stream};
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 use crate::validity::Validity;
-use crate::verify::{Refusal, Verifier};
+use crate::verify::{Refusal, Verified, Verifier};
 
 /// The input of Algorithm 1: M, B, A, `c_I` and G, and the judge of the result.
 ///
@@ -43,8 +43,8 @@ impl<D: Domain> Clone for Problem<D> {
 struct Unjudged;
 
 impl<D: Domain> Verifier<D> for Unjudged {
-    fn verify(&self, _: &D, _: &State<D>, _: &dyn Goal<D>, _: &Plan<D>) -> Result<(), Refusal> {
-        Ok(())
+    fn verify(&self, _: &D, _: &State<D>, _: &dyn Goal<D>, _: &Plan<D>) -> Result<Verified, Refusal> {
+        Ok(Verified::default())
     }
 }
 

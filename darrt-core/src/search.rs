@@ -275,10 +275,11 @@ impl<'p, D: Domain> Darrt<'p, D> {
         if self.is_part {
             return Ok(solution);
         }
-        // Nor is a smoother one, or time that runs out over it.
-        let smooth =
-            smooth(&extender, solution.plan(), self.strategy.smooth, rng).and_then(|plan| self.judge(plan).ok());
-        Ok(smooth.unwrap_or(solution))
+        // Nor is a smoother one, one that is too near to something, or time that runs out over it.
+        let options = self.strategy.smooth;
+        let smooth = smooth(&extender, solution.plan(), options, rng).and_then(|plan| self.judge(plan).ok());
+        let is_better = |new: &Solution<D>| options.is_clear_enough(solution.clearance_m(), new.clearance_m());
+        Ok(smooth.filter(is_better).unwrap_or(solution))
     }
 
     fn judge(&self, plan: Plan<D>) -> Result<Solution<D>, Refusal> {

@@ -5,7 +5,8 @@
 //! two moves of one kind it merges them. Where the objects stand at the second cut as at the first it drops a detour, or a
 //! push and the push back. The rest of the plan stays as it is, and at its end only the goal counts.
 //!
-//! What is new is judged like every other motion of the search, so it keeps the same clearance. The verifier judges the whole.
+//! What is new is judged like every other motion of the search, so it keeps the clearance that the search keeps, though the plan
+//! before may have kept more. The verifier judges and measures the whole, and [`SmoothOptions::is_clear_enough`] decides.
 
 use std::sync::Arc;
 
@@ -28,10 +29,27 @@ const ROUNDING_M: f64 = 1e-9;
 const NEAR: usize = 3;
 
 /// How much effort goes into a smoother plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SmoothOptions {
     /// How many extensions are made at most; 0: the plan stays as it is.
     pub attempts: usize,
+    /// Clearance, in metres, above which a smoother plan may give some of it away: it takes the place of the plan before only
+    /// if the verifier measures at least this, or as much as before. Infinite: it never gives any away. 0: whatever the
+    /// verifier accepts will do.
+    pub clearance_m: f64,
+}
+
+impl SmoothOptions {
+    /// May a smoother plan with the clearance `after` take the place of one with `before`, both as the verifier measured them
+    /// ([`Verified::clearance_m`](crate::verify::Verified::clearance_m))?
+    ///
+    /// # Laws
+    /// Yes if either was not measured. Else `after` is at least the smaller one of `before` and the bound; one that is no
+    /// number is not.
+    pub fn is_clear_enough(&self, before: Option<f64>, after: Option<f64>) -> bool {
+        let (Some(before), Some(after)) = (before, after) else { return true };
+        after >= before.min(self.clearance_m)
+    }
 }
 
 /// A plan to the goal with fewer steps than `plan` and no more travel, or with less travel and no more steps, if one was

@@ -75,7 +75,7 @@ pub enum Cost {
     /// Fewer metres of travel; among equals the fewer steps.
     Travel,
     /// More distance between bodies that may not touch, where they are nearest
-    /// ([`Verifier::clearance_m`](crate::verify::Verifier::clearance_m)); among equals the fewer steps.
+    /// ([`Verified::clearance_m`](crate::verify::Verified::clearance_m)); among equals the fewer steps.
     Clearance,
 }
 

@@ -1,7 +1,9 @@
 //! The independent judge of a plan. Success cannot be claimed without it: a [`Solution`] can only be
 //! built here, from a plan that a verifier has accepted.
 
+use std::any::Any;
 use std::fmt;
+use std::sync::Arc;
 
 use crate::domain::Domain;
 use crate::goal::Goal;
@@ -30,37 +32,40 @@ impl fmt::Display for Refusal {
     }
 }
 
+/// What a verifier saw of a plan that it accepts.
+#[derive(Debug, Clone, Default)]
+pub struct Verified {
+    /// The smallest distance, in metres, of two bodies that may not touch; `None` if it does not measure that.
+    pub clearance_m: Option<f64>,
+    /// Whatever else it wants to hand over with the plan, a proof for example. The planner does not look at it.
+    pub evidence: Option<Arc<dyn Any + Send + Sync>>,
+}
+
 /// Judges plans, independently of the planner and of the primitives.
 pub trait Verifier<D: Domain>: Send + Sync {
-    /// Accepts or refuses. One that takes long should give up, with any refusal, when the search is cancelled.
+    /// Accepts, and says what it measured, or refuses. One that takes long should give up, with any refusal, when the search is cancelled.
     ///
     /// # Errors
     /// The first [`Refusal`] found.
-    fn verify(&self, m: &D, start: &State<D>, goal: &dyn Goal<D>, plan: &Plan<D>) -> Result<(), Refusal>;
-
-    /// The smallest distance, in metres, of two bodies that may not touch in a plan that it has just accepted; `None` if it
-    /// does not measure that, or keeps it no longer.
-    fn clearance_m(&self, _plan: &Plan<D>) -> Option<f64> {
-        None
-    }
+    fn verify(&self, m: &D, start: &State<D>, goal: &dyn Goal<D>, plan: &Plan<D>) -> Result<Verified, Refusal>;
 }
 
 /// A plan that a verifier has accepted. There is no other way to make one.
 pub struct Solution<D: Domain> {
     plan: Plan<D>,
-    clearance_m: Option<f64>,
+    verified: Verified,
 }
 
 impl<D: Domain> Clone for Solution<D> {
     fn clone(&self) -> Self {
-        Self { plan: self.plan.clone(), clearance_m: self.clearance_m }
+        Self { plan: self.plan.clone(), verified: self.verified.clone() }
     }
 }
 
 // Not derived: that would ask the domain to be printable.
 impl<D: Domain> fmt::Debug for Solution<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Solution").field("plan", &self.plan).field("clearance_m", &self.clearance_m).finish()
+        f.debug_struct("Solution").field("plan", &self.plan).field("verified", &self.verified).finish()
     }
 }
 
@@ -76,9 +81,8 @@ impl<D: Domain> Solution<D> {
         verifier: &dyn Verifier<D>,
         plan: Plan<D>,
     ) -> Result<Self, Refusal> {
-        verifier.verify(m, start, goal, &plan)?;
-        let clearance_m = verifier.clearance_m(&plan);
-        Ok(Self { plan, clearance_m })
+        let verified = verifier.verify(m, start, goal, &plan)?;
+        Ok(Self { plan, verified })
     }
 
     /// The plan.
@@ -88,7 +92,12 @@ impl<D: Domain> Solution<D> {
 
     /// The smallest distance that the verifier saw, metres; `None` if it does not measure it.
     pub fn clearance_m(&self) -> Option<f64> {
-        self.clearance_m
+        self.verified.clearance_m
+    }
+
+    /// All that the verifier said of the plan.
+    pub fn verified(&self) -> &Verified {
+        &self.verified
     }
 }
 
@@ -158,7 +167,7 @@ fn stray<D: Domain>(m: &D, before: &State<D>, now: &State<D>, moves: crate::stat
 }
 
 impl<D: Domain, V: Validity<D>> Verifier<D> for Replay<V> {
-    fn verify(&self, m: &D, start: &State<D>, goal: &dyn Goal<D>, plan: &Plan<D>) -> Result<(), Refusal> {
+    fn verify(&self, m: &D, start: &State<D>, goal: &dyn Goal<D>, plan: &Plan<D>) -> Result<Verified, Refusal> {
         let whole = |reason: String| Refusal { step: None, at: 0.0, reason };
         if plan.start() != start {
             return Err(whole("the plan does not start at the start of the problem".to_owned()));
@@ -170,6 +179,10 @@ impl<D: Domain, V: Validity<D>> Verifier<D> for Replay<V> {
         for index in 0..plan.steps().len() {
             state = self.replay_step(m, plan, index, &state)?;
         }
-        if goal.is_satisfied(m, &state) { Ok(()) } else { Err(whole("the plan does not end in the goal".to_owned())) }
+        if !goal.is_satisfied(m, &state) {
+            return Err(whole("the plan does not end in the goal".to_owned()));
+        }
+        // Its oracle says yes or no, not how near.
+        Ok(Verified::default())
     }
 }

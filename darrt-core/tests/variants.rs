@@ -304,7 +304,10 @@ fn smoothing_changes_the_plan_and_not_the_search() {
     let problem = problems::two_pucks().unwrap();
     for algorithm in Algorithm::ALL {
         let planned = |attempts| {
-            let strategy = Strategy { smooth: SmoothOptions { attempts }, ..paper_strategy().unwrap() };
+            let strategy = Strategy {
+                smooth: SmoothOptions { attempts, ..SmoothOptions::default() },
+                ..paper_strategy().unwrap()
+            };
             let members = [Member { algorithm, strategy: &strategy }];
             solve_with(&problem, &members, Until::Solved, &options(3, 20_000), &mut Silent)
         };

@@ -5,6 +5,7 @@
 //! | how is a file read without trusting it? | [`read`] |
 //! | how is it written so that it is never half there? | [`mod@write`] |
 //! | which joints does a waypoint list? | [`joints`], [`complete`] |
+//! | how was it found? | [`facts`] |
 //! | what does the published schema say? | [`schema`](crate::schema) |
 //!
 //! `docs/plan-format.md` explains the meaning of every key to readers without this code. SI units, radians, world frame
@@ -13,6 +14,7 @@
 
 pub mod complete;
 pub mod error;
+pub mod facts;
 pub mod joints;
 mod json;
 mod layout;
@@ -28,8 +30,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::arm::Side;
-use crate::problem_file::{DistanceName, PrimitiveName, ProblemFile, SamplerName};
+use crate::problem_file::{PrimitiveName, ProblemFile};
 pub use error::PlanFileError;
+pub use facts::{CostName, PlannerFacts, SearchName};
 pub use joints::JointTable;
 
 /// The only accepted value of the key `format`.
@@ -61,22 +64,6 @@ pub struct PlanFile {
     pub start: Waypoint,
     /// The primitive actions in order.
     pub steps: Vec<Step>,
-}
-
-/// How a plan was found: what is the same every time, and no times.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PlannerFacts {
-    /// Which components a sample specified.
-    pub sampler: SamplerName,
-    /// Which distance picked the tree node.
-    pub distance: DistanceName,
-    /// Iterations in all, those before a restart included.
-    pub iterations: u64,
-    /// How often the planner started over.
-    pub restarts: u64,
-    /// Nodes of the last tree.
-    pub nodes: u64,
 }
 
 /// One primitive action.

@@ -1,6 +1,6 @@
 //! Planning a problem file from end to end: build, search, verify, export.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Duration;
 
 use darrt_core::budget::{Budget, Cancel, Stop};
@@ -16,12 +16,12 @@ use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
 use darrt_core::smooth::SmoothOptions;
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
-use darrt_core::verify::{Refusal, Verifier};
+use darrt_core::verify::{Refusal, Verified, Verifier};
 use darrt_primitives::detour::Detour;
 use darrt_primitives::validity::SceneValidity;
 
 use crate::export::Exporter;
-use crate::plan_file::{PlanFile, PlannerFacts, Step};
+use crate::plan_file::{PlanFile, PlannerFacts, SearchName, Step};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{DistanceName, PrimitiveName, ProblemFile, SamplerName, Sampling};
 use crate::stopwatch::{Stopwatch, Timed, Times, Watched};
@@ -64,7 +64,8 @@ pub struct PlanRequest {
     /// Go on until the budget ends, and keep the plan that is the cheapest in this; `None`: end with the first plan.
     /// Attempts are restarted after 2000 iterations if nothing says when.
     pub improve: Option<Cost>,
-    /// Extensions that are made at most to make a plan that has been found smoother; 0: none.
+    /// Extensions that are made at most to make a plan that has been found smoother; 0: none. The smoother plan has at least
+    /// the clearance that the search keeps, or that of the plan before; when plans are improved in clearance, the latter.
     pub smooth: usize,
     /// Draw where the robot stands from its inverse reachability model, not from a ring around the hand's pose; see
     /// [`with_bases_from_reachability`](crate::robot::Pr2::with_bases_from_reachability).
@@ -127,74 +128,25 @@ pub struct PlanResult {
 #[derive(Debug)]
 struct FileVerifier {
     exporter: Arc<Exporter>,
-    accepted: Accepted,
-    /// Plans that are dearer than another in this are forgotten.
-    improve: Option<Cost>,
     cancel: Cancel,
     watch: Arc<Stopwatch>,
 }
 
-/// A plan that was accepted, its steps as they are in the file, and what the verifier saw.
+/// What goes with a plan that was accepted: its steps as they are in the file, and what the verifier saw.
 #[derive(Debug)]
-struct AcceptedPlan {
-    plan: Plan<World>,
+struct Judged {
     steps: Vec<Step>,
     proof: Proof,
 }
 
-impl AcceptedPlan {
-    fn is_of(&self, plan: &Plan<World>) -> bool {
-        let steps = self.plan.steps().iter().zip(plan.steps());
-        self.plan.steps().len() == plan.steps().len()
-            && steps.into_iter().all(|(a, b)| Arc::ptr_eq(&a.instance, &b.instance) && a.until == b.until)
-    }
-
-    fn clearance_m(&self) -> Option<f64> {
-        self.proof.smallest_clearance.as_ref().map(|smallest| smallest.distance_m)
-    }
-}
-
-/// The plans that were accepted: one for each thread that came to one, at most, and what it became when it was made smoother;
-/// when plans are improved, the cheapest.
-type Accepted = Arc<Mutex<Vec<AcceptedPlan>>>;
-
 impl Verifier<World> for FileVerifier {
-    fn verify(&self, m: &World, _: &WorldState, _: &dyn Goal<World>, plan: &Plan<World>) -> Result<(), Refusal> {
-        let nobody = PlannerFacts {
-            sampler: SamplerName::default(),
-            distance: DistanceName::default(),
-            iterations: 0,
-            restarts: 0,
-            nodes: 0,
-        };
-        let file = self.exporter.export(m, plan, 0, nobody);
-        match self.watch.verification(|| verify_unless(&file, &VerifyOptions::default(), &self.cancel)) {
-            Ok(proof) => {
-                if let Ok(mut accepted) = self.accepted.lock() {
-                    let accept = AcceptedPlan { plan: plan.clone(), steps: file.steps, proof };
-                    keep(&mut accepted, accept, self.improve);
-                }
-                Ok(())
-            }
-            Err(refusal) => Err(Refusal { step: None, at: 0.0, reason: refusal.to_string() }),
-        }
+    fn verify(&self, m: &World, _: &WorldState, _: &dyn Goal<World>, plan: &Plan<World>) -> Result<Verified, Refusal> {
+        let file = self.exporter.export(m, plan, 0, PlannerFacts::default());
+        let verdict = self.watch.verification(|| verify_unless(&file, &VerifyOptions::default(), &self.cancel));
+        let proof = verdict.map_err(|refusal| Refusal { step: None, at: 0.0, reason: refusal.to_string() })?;
+        let clearance_m = proof.smallest_clearance.as_ref().map(|smallest| smallest.distance_m);
+        Ok(Verified { clearance_m, evidence: Some(Arc::new(Judged { steps: file.steps, proof })) })
     }
-
-    fn clearance_m(&self, plan: &Plan<World>) -> Option<f64> {
-        self.accepted.lock().ok()?.iter().find(|accepted| accepted.is_of(plan))?.clearance_m()
-    }
-}
-
-/// Adds a plan, without those that are dearer than another.
-fn keep(accepted: &mut Vec<AcceptedPlan>, plan: AcceptedPlan, improve: Option<Cost>) {
-    if let Some(cost) = improve {
-        let price = cost.of(&plan.plan, plan.clearance_m());
-        accepted.retain(|other| cost.of(&other.plan, other.clearance_m()) <= price);
-        if accepted.iter().any(|other| cost.of(&other.plan, other.clearance_m()) < price) {
-            return;
-        }
-    }
-    accepted.push(plan);
 }
 
 /// A problem ready to be solved.
@@ -203,7 +155,6 @@ pub struct Prepared {
     /// The planner's problem.
     pub problem: Problem<World>,
     exporter: Arc<Exporter>,
-    accepted: Accepted,
 }
 
 /// Builds and checks everything about a problem before the search.
@@ -224,7 +175,7 @@ pub fn prepare_unless(file: &ProblemFile, cancel: &Cancel) -> Result<Prepared, P
 }
 
 fn prepare_watched(request: &PlanRequest, cancel: &Cancel, watch: &Arc<Stopwatch>) -> Result<Prepared, PlanningError> {
-    let (file, improve) = (&request.problem, request.improve);
+    let file = &request.problem;
     check_companions(file)?;
     crate::goal_means::check_means(file)?;
     let Built { world, start, goal, scene } = world::build_with(file, |robot| {
@@ -233,14 +184,7 @@ fn prepare_watched(request: &PlanRequest, cancel: &Cancel, watch: &Arc<Stopwatch
     let validity = SceneValidity::new(&world);
     crate::goal_check::check_goal(&world, &goal, &scene)?;
     let exporter = Arc::new(Exporter::new(file, &world)?);
-    let accepted = Accepted::default();
-    let verifier = FileVerifier {
-        exporter: Arc::clone(&exporter),
-        accepted: Arc::clone(&accepted),
-        improve,
-        cancel: cancel.clone(),
-        watch: Arc::clone(watch),
-    };
+    let verifier = FileVerifier { exporter: Arc::clone(&exporter), cancel: cancel.clone(), watch: Arc::clone(watch) };
     let primitives = world::primitives(file).into_iter();
     let problem = Problem::new(Parts {
         domain: world,
@@ -250,7 +194,7 @@ fn prepare_watched(request: &PlanRequest, cancel: &Cancel, watch: &Arc<Stopwatch
         validity: Box::new(Timed { part: validity, watch: Arc::clone(watch) }),
         verifier: Box::new(verifier),
     })?;
-    Ok(Prepared { problem, exporter, accepted })
+    Ok(Prepared { problem, exporter })
 }
 
 /// Plans. Stopping without a plan is a result, not an error.
@@ -262,7 +206,7 @@ pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer)
     let prepared = prepare_watched(request, cancel, &watch)?;
     let (sampler, distance) = chosen(request);
     let mut strategy = strategy(&request.problem.sampling, sampler, distance)?;
-    strategy.smooth.attempts = request.smooth;
+    strategy.smooth = smoothing(request, prepared.problem.domain());
     if let Some(adjust) = request.adjust {
         adjust(&mut strategy);
     }
@@ -305,23 +249,26 @@ fn result(
     (sampler, distance): (SamplerName, DistanceName),
     outcome: Outcome<World>,
 ) -> PlanResult {
-    let nodes = outcome.nodes as u64;
-    let facts = PlannerFacts { sampler, distance, iterations: outcome.iterations, restarts: outcome.restarts, nodes };
-    let m = prepared.problem.domain();
-    let accepted = outcome.solution.as_ref().and_then(|solution| {
-        let mut accepted = prepared.accepted.lock().ok()?;
-        let index = accepted.iter().position(|accepted| accepted.is_of(solution.plan()))?;
-        Some(accepted.swap_remove(index))
-    });
-    let (plan, proof) = match accepted {
-        Some(AcceptedPlan { plan, steps, proof }) => {
-            (Some(prepared.exporter.with_steps(m, &plan, steps, request.seed, facts)), Some(proof))
-        }
-        None => (outcome.solution.map(|s| prepared.exporter.export(m, s.plan(), request.seed, facts)), None),
+    let facts = PlannerFacts {
+        sampler,
+        distance,
+        searches: request.algorithms.iter().filter_map(|algorithm| SearchName::of(*algorithm)).collect(),
+        improve: request.improve.map(Into::into),
+        smooth: request.smooth as u64,
+        iterations: outcome.iterations,
+        restarts: outcome.restarts,
+        nodes: outcome.nodes as u64,
     };
+    let m = prepared.problem.domain();
+    let judged = outcome.solution.as_ref().and_then(|solution| {
+        let judged = solution.verified().evidence.as_ref()?.downcast_ref::<Judged>()?;
+        Some((solution.plan(), judged))
+    });
+    let plan =
+        judged.map(|(plan, judged)| prepared.exporter.with_steps(m, plan, judged.steps.clone(), request.seed, facts));
     PlanResult {
         plan,
-        proof,
+        proof: judged.map(|(_, judged)| judged.proof.clone()),
         plans: 0,
         stop: outcome.stop,
         accounts: outcome.accounts,
@@ -333,6 +280,13 @@ fn result(
         times: Times::default(),
         last_refusal: outcome.last_refusal,
     }
+}
+
+/// A smoother plan keeps what the search keeps; one that is chosen for its clearance gives none away.
+fn smoothing(request: &PlanRequest, m: &World) -> SmoothOptions {
+    let is_for_clearance = request.improve == Some(Cost::Clearance);
+    let clearance_m = if is_for_clearance { f64::INFINITY } else { m.surroundings().strictness().clearance_m };
+    SmoothOptions { attempts: request.smooth, clearance_m }
 }
 
 fn chosen(request: &PlanRequest) -> (SamplerName, DistanceName) {

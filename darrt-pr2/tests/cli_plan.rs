@@ -97,7 +97,14 @@ fn improved_plans_are_counted_and_the_same_on_any_number_of_threads() {
         let (printed, _) = run(folder.path(), &[&own[..], &common].concat(), 0);
         assert!(printed.contains("bowl: the best of ") && printed.contains(" plans in "), "{printed}");
     }
-    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    // The files say how they were made, but for the threads.
+    let facts = |name: &str| serde_json::from_str::<serde_json::Value>(&read(name)).unwrap()["planner"].clone();
+    let searches = ["darrt", "connect", "hierarchical", "hierarchical-connect"];
+    assert_eq!(facts("portfolio-1.json")["searches"], serde_json::json!(searches));
+    assert_eq!(facts("darrt-1.json")["searches"], serde_json::json!(["darrt"]));
+    assert_eq!(facts("darrt-1.json")["improve"], "steps");
+    assert!(facts("darrt-1.json").get("smooth").is_none());
     assert_eq!(read("darrt-1.json"), read("darrt-3.json"));
     assert_eq!(read("portfolio-1.json"), read("portfolio-3.json"));
 }
@@ -148,26 +155,46 @@ fn a_budget_that_ends_is_explained() {
     assert!(files(folder.path()).is_empty(), "nothing is written without a plan");
 }
 
+/// Interrupted after two seconds; the handler is set within moments.
 #[cfg(unix)]
-#[test]
-fn an_interrupt_ends_the_search_and_is_reported() {
+fn interrupted(folder: &Path, arguments: &[&str]) -> Output {
     use std::process::Stdio;
-    let folder = tempfile::tempdir().unwrap();
     let child = Command::new(env!("CARGO_BIN_EXE_darrt"))
-        .current_dir(folder.path())
-        .args(["plan", "plate3", "--seed", "1", "--time-limit", "600", "--restart", "1"])
+        .current_dir(folder)
+        .args(arguments)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // A restart after every iteration keeps the search from ever getting anywhere; the handler is set within moments.
     std::thread::sleep(std::time::Duration::from_secs(2));
     let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(killed.success());
-    let output = child.wait_with_output().unwrap();
+    child.wait_with_output().unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_the_search_and_is_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    // A restart after every iteration keeps the search from ever getting anywhere.
+    let arguments = ["plan", "plate3", "--seed", "1", "--time-limit", "600", "--restart", "1"];
+    let output = interrupted(folder.path(), &arguments);
     assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("cancelled after"), "{}", text(&output.stderr));
     assert!(files(folder.path()).is_empty());
+}
+
+#[cfg(unix)]
+#[test]
+fn improved_plans_that_are_interrupted_give_the_best_so_far_and_say_so() {
+    let folder = tempfile::tempdir().unwrap();
+    solved_problem(folder.path());
+    let arguments = ["plan", "easy.toml", "--improve", "steps", "--time-limit", "600", "--no-picture"];
+    let output = interrupted(folder.path(), &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let first = text(&output.stdout).lines().next().unwrap().to_owned();
+    assert!(first.contains(": the best of ") && first.contains(" s, interrupted (seed 0"), "{first}");
+    run(folder.path(), &["check", "easy.plan.json"], 0);
 }
 
 /// A box of 0.2 m around the origin.

@@ -8,6 +8,7 @@
 //! | retreat from what the hand stands at | [`retreat`] |
 //! | go to a configuration, alone or with an object in the hand | [`travel`] |
 //! | find a base and an arm configuration for a hand pose | [`stance`] |
+//! | know how far the hand must travel to push or grasp | [`approach`] |
 //! | push an object | [`push`] |
 //! | grasp and lift | [`pick`] |
 //! | carry to a pose in the air | [`transfer`] |
@@ -17,6 +18,7 @@ use darrt_core::primitive::{Infeasible, Instances};
 
 use crate::tabletop::{Tabletop, TabletopState};
 
+pub mod approach;
 pub mod line;
 pub mod pick;
 pub mod place;

@@ -105,6 +105,7 @@ impl Grasp {
 /// # Laws
 /// - [`Self::grid`] is never empty and the same on every call.
 /// - Every grasp has `closed_gap_m < open_gap_m`, both positive, a finite pose and a positive approach.
+/// - No grasp has its tool farther from the origin of the object frame than [`Self::tool_reach_m`].
 ///
 /// ```
 /// use darrt_primitives::grasp::{Grasp, GraspFamily};
@@ -132,6 +133,12 @@ pub trait GraspFamily: Send + Sync {
     /// [`GraspKind::Rim`])? Where it does not, none of them is drawn.
     fn needs_overhang(&self) -> bool {
         false
+    }
+
+    /// Bound on the distance of the tool from the origin of the object frame in every grasp of the family, metres, at least
+    /// 0; infinite if it is not known.
+    fn tool_reach_m(&self) -> f64 {
+        f64::INFINITY
     }
 }
 
@@ -243,6 +250,10 @@ mod tests {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(7);
         for family in families() {
             let grid = family.grid();
+            let reach_m = family.tool_reach_m();
+            let gap_m = |grasp: &Grasp| grasp.object_from_tool.translation.vector.norm();
+            let farthest_m = grid.iter().map(gap_m).fold(0.0, f64::max);
+            assert!(farthest_m <= reach_m + 1e-12 && reach_m < farthest_m + 0.02, "{farthest_m} {reach_m}");
             assert!(!grid.is_empty());
             assert_eq!(grid, family.grid());
             grid.iter().for_each(check_law);
@@ -250,7 +261,9 @@ mod tests {
                 assert!(!grid.iter().take(i).any(|other| other == grasp));
             }
             for _ in 0..50 {
-                check_law(&family.sample(&mut rng));
+                let grasp = family.sample(&mut rng);
+                check_law(&grasp);
+                assert!(gap_m(&grasp) <= reach_m + 1e-12, "{grasp:?}");
             }
         }
     }

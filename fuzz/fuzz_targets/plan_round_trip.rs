@@ -3,8 +3,8 @@
 
 use arbitrary::Arbitrary;
 use darrt_pr2::plan_file::{
-    AllowedContact, ContactReason, Hold, PlanFile, PlanFileError, PlanFormat, PlannerFacts, Pose, Step, VERSION,
-    Waypoint,
+    AllowedContact, ContactReason, CostName, Hold, PlanFile, PlanFileError, PlanFormat, PlannerFacts, Pose, SearchName,
+    Step, VERSION, Waypoint,
 };
 use darrt_pr2::problem_file::{DistanceName, PrimitiveName, SamplerName, builtin, builtin_names};
 use libfuzzer_sys::fuzz_target;
@@ -15,6 +15,9 @@ struct PlanSketch {
     seed: u64,
     counts: [u64; 3],
     variants: [u8; 2],
+    searches: Vec<u8>,
+    improve: Option<u8>,
+    smooth: u64,
     start: WaypointSketch,
     steps: Vec<StepSketch>,
 }
@@ -78,6 +81,7 @@ impl StepSketch {
 impl PlanSketch {
     fn plan(&self) -> PlanFile {
         let samplers = [SamplerName::RobotOrObjects, SamplerName::RandomSubset, SamplerName::Full];
+        let costs = [CostName::Steps, CostName::Travel, CostName::Clearance];
         let distances = [DistanceName::Greedy, DistanceName::Euclidean, DistanceName::ExactTour];
         PlanFile {
             format: PlanFormat::DarrtPlan,
@@ -87,6 +91,9 @@ impl PlanSketch {
             planner: PlannerFacts {
                 sampler: pick(&samplers, self.variants[0]),
                 distance: pick(&distances, self.variants[1]),
+                searches: self.searches.iter().map(|which| pick(&SearchName::ALL, *which)).collect(),
+                improve: self.improve.map(|which| pick(&costs, which)),
+                smooth: self.smooth,
                 iterations: self.counts[0],
                 restarts: self.counts[1],
                 nodes: self.counts[2],

@@ -25,8 +25,7 @@ pub const THREADS: &str = "planner.threads: the outcome is the same on 1, 2 and 
 pub const BALANCED: &str =
     "planner.balanced: every extension ends in one bucket per primitive, and every added state is a node";
 /// Solved implies verified.
-pub const VERIFIED: &str =
-    "planner.verified: a solution starts at the start, ends in the goal and is accepted by the verifier";
+pub const VERIFIED: &str = "planner.verified: a solution starts at the start, ends in the goal and is accepted by the verifier, again with the same clearance";
 /// Cancellation.
 pub const CANCEL: &str = "planner.cancel: after it is cancelled it ends within one extension per thread, and says so";
 
@@ -154,10 +153,11 @@ fn outcome<D: Domain>(problem: &Problem<D>, outcome: &Outcome<D>) -> Result<(), 
     equal(VERIFIED, plan.start(), problem.start())?;
     let end = plan.end(m);
     ensure(VERIFIED, problem.goal().is_satisfied(m, &end), || format!("{end:?}"), "a state in the goal")?;
-    problem
+    let again = problem
         .verifier()
         .verify(m, problem.start(), problem.goal(), plan)
-        .map_err(|refusal| Broken::new(VERIFIED, refusal.to_string(), "accepted"))
+        .map_err(|refusal| Broken::new(VERIFIED, refusal.to_string(), "accepted"))?;
+    equal(VERIFIED, &again.clearance_m, &solution.clearance_m()).map_err(|broken| broken.of("clearance"))
 }
 
 fn same_outcome<D: Domain>(found: &Outcome<D>, against: &Outcome<D>) -> Result<(), Broken> {

@@ -12,7 +12,7 @@ use darrt_core::problem::Problem;
 use darrt_core::state::State;
 use darrt_core::testing::puck::Judge;
 use darrt_core::validity::AlwaysValid;
-use darrt_core::verify::{Refusal, Replay, Verifier};
+use darrt_core::verify::{Refusal, Replay, Verified, Verifier};
 
 use super::support::{World, options, robot_instance, run, run_observed, small};
 
@@ -22,11 +22,11 @@ struct Grumpy {
 }
 
 impl Verifier<World> for Grumpy {
-    fn verify(&self, _: &World, _: &State<World>, _: &dyn Goal<World>, _: &Plan<World>) -> Result<(), Refusal> {
+    fn verify(&self, _: &World, _: &State<World>, _: &dyn Goal<World>, _: &Plan<World>) -> Result<Verified, Refusal> {
         let left = self.refusals_left.fetch_update(Ordering::SeqCst, Ordering::SeqCst, |n| n.checked_sub(1));
         match left {
             Ok(n) => Err(Refusal { step: None, at: 0.0, reason: format!("not in the mood, {n} more") }),
-            Err(_) => Ok(()),
+            Err(_) => Ok(Verified::default()),
         }
     }
 }
@@ -80,7 +80,7 @@ fn verdict(spoil: impl Fn(&mut Step<World>)) -> Result<(), String> {
     let mut step = Step { instance: robot_instance(start, &target).into(), until: 1.0, primitive: 0 };
     spoil(&mut step);
     let plan = Plan::new(start.clone(), vec![step]);
-    problem.verifier().verify(m, start, problem.goal(), &plan).map_err(|refusal| refusal.to_string())
+    problem.verifier().verify(m, start, problem.goal(), &plan).map(|_| ()).map_err(|refusal| refusal.to_string())
 }
 
 #[test]

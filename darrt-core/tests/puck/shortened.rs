@@ -13,7 +13,7 @@ use darrt_core::shorten::{ShortenOptions, shorten};
 use darrt_core::solve::{SolveOptions, solve};
 use darrt_core::state::State;
 use darrt_core::testing::puck::{paper_strategy, problems};
-use darrt_core::verify::{Refusal, Verifier};
+use darrt_core::verify::{Refusal, Verified, Verifier};
 
 use super::support::{World, options, rng, small};
 
@@ -57,7 +57,7 @@ fn every_shorter_plan_is_right_however_early_the_effort_ends() {
                 *shorter += 1;
                 assert!(short.steps().len() < plan.steps().len());
                 let verdict = problem.verifier().verify(problem.domain(), problem.start(), problem.goal(), &short);
-                assert_eq!(verdict, Ok(()), "seed {seed}, depth {max_depth}, {extensions} extensions");
+                assert_eq!(verdict.err(), None, "seed {seed}, depth {max_depth}, {extensions} extensions");
             }
         }
     }
@@ -72,7 +72,7 @@ struct Cancelling {
 }
 
 impl Verifier<World> for Cancelling {
-    fn verify(&self, _: &World, _: &State<World>, _: &dyn Goal<World>, _: &Plan<World>) -> Result<(), Refusal> {
+    fn verify(&self, _: &World, _: &State<World>, _: &dyn Goal<World>, _: &Plan<World>) -> Result<Verified, Refusal> {
         self.shown.fetch_add(1, Ordering::SeqCst);
         self.cancel.cancel();
         Err(Refusal { step: None, at: 0.0, reason: "nobody waits".to_owned() })
@@ -109,7 +109,7 @@ impl Verifier<World> for Late {
         start: &State<World>,
         goal: &dyn Goal<World>,
         plan: &Plan<World>,
-    ) -> Result<(), Refusal> {
+    ) -> Result<Verified, Refusal> {
         self.cancel.cancel();
         self.judge.verify(m, start, goal, plan)
     }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use darrt_core::distance::Weighted;
+use darrt_core::distance::{ApproachVisit, Weighted};
 use darrt_core::error::Error;
 use darrt_core::sample::{Frontier, Full, Placed, Sampler};
 use darrt_core::search::{Algorithm, Strategy};
@@ -10,9 +10,11 @@ use darrt_core::shorten::ShortenOptions;
 use darrt_core::space::Place;
 
 use super::error::BenchError;
+use crate::pick::Pick;
 use crate::planning::PlanRequest;
 use crate::problem_file::suggest::nearest;
 use crate::problem_file::{DistanceName, SamplerName};
+use crate::push::Push;
 use crate::world::World;
 
 /// Metres between two nodes of the tree in `fine-steps`.
@@ -34,7 +36,7 @@ pub struct Variant {
 }
 
 /// All variants; the first is the planner as it is. A new variant is one line here.
-pub const VARIANTS: [Variant; 29] = [
+pub const VARIANTS: [Variant; 30] = [
     variant("default", "as the problem says", |_| {}),
     variant("robot-or-objects", "samples name the robot or the objects", |r| {
         r.sampler = Some(SamplerName::RobotOrObjects);
@@ -97,6 +99,10 @@ pub const VARIANTS: [Variant; 29] = [
     }),
     variant("maximum", "distance: the longest way of all", |r| {
         r.adjust = Some(|s| remeasure(s, || Weighted::maximum(1.0, 1.0)));
+    }),
+    variant("approach", "distance: greedy, but the first way leads to the contact or grasp", |r| {
+        // One that the problem does not allow makes the way no longer.
+        r.adjust = Some(|s| s.distance = Box::new(ApproachVisit::new(vec![Box::new(Push), Box::new(Pick)])));
     }),
     variant("connect", "DARRTConnect: a second tree from the goal", |r| {
         r.algorithms = vec![Algorithm::Connect];

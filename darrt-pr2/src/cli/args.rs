@@ -76,8 +76,8 @@ of threads, as long as the time limit is not what ends the search or the smoothi
 Every attempt ends at a restart; --improve and --search portfolio need them, and begin a new
 attempt after 2000 iterations if neither the problem nor --restart says when. The share of an
 attempt in --iterations is all that it may use until its restart, also when it needs less.
-After Ctrl-C, --improve gives the best plan so far, and --smooth the plan as it is then; the
-exit code is 0.
+After Ctrl-C, --improve gives the best plan so far, and --smooth the plan as it is then: the
+first line says that it was interrupted, and the exit code is 0, because there is a plan.
 
 --search portfolio: the first attempt is darrt, then connect, hierarchical, hierarchical-connect
 and so on, so a short --restart brings the others in.

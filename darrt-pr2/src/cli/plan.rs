@@ -38,7 +38,7 @@ pub(super) fn run(options: &PlanOptions, output: &mut Output) -> Result<Exit, Fa
     // First of all: a terminal that has gone away must not cost the plan.
     files.write(plan, &story)?;
     if !options.quiet {
-        output.print(&summary(&request, &result))?;
+        output.print(&summary(&request, &result, cancel.is_cancelled()))?;
         output.print(&steps::table(&story))?;
         output.print(&check::words(proof))?;
         output.print(&files.words())?;
@@ -85,15 +85,17 @@ fn failed(request: &PlanRequest, result: &PlanResult) -> Failure {
     Failure::new(exit, format!("{name}: no plan found (seed {}): {}", request.seed, diagnosis::explain(result)))
 }
 
-fn summary(request: &PlanRequest, result: &PlanResult) -> String {
+/// Plans that are improved end with "solved" also when they were interrupted: a plan there is, but it might have been better.
+fn summary(request: &PlanRequest, result: &PlanResult, is_interrupted: bool) -> String {
     let solved = match request.improve {
         Some(_) => format!("the best of {} in", counted(result.plans, "plan")),
         None => "solved in".to_owned(),
     };
     format!(
-        "{}: {solved} {:.1} s (seed {}, {}, {}, largest tree {})",
+        "{}: {solved} {:.1} s{} (seed {}, {}, {}, largest tree {})",
         request.problem.name,
         result.elapsed.as_secs_f64(),
+        if is_interrupted { ", interrupted" } else { "" },
         request.seed,
         counted(result.iterations, "iteration"),
         counted(result.restarts, "restart"),

@@ -2,6 +2,7 @@ use darrt_core::observe::Silent;
 
 use super::*;
 use crate::problem_file::builtin;
+use crate::verify::verify;
 
 /// Bowl with a budget of iterations alone.
 fn request(iterations: u64) -> PlanRequest {
@@ -51,6 +52,31 @@ fn more_budget_never_gives_a_plan_of_less_clearance() {
     let (some, more) = (clearance_m(600, 1), clearance_m(1200, 1));
     assert!(first <= some && some <= more && first < more, "{first} {some} {more}");
     assert_eq!(clearance_m(1200, 2), more);
+}
+
+/// The smoother plan has often less clearance; what is returned then is the plan before, with its own proof.
+#[test]
+fn smoothing_gives_no_clearance_away_when_clearance_is_improved() {
+    let best = |smooth| planned(&PlanRequest { improve: Some(Cost::Clearance), smooth, ..request(600) });
+    let [plain, smooth] = [best(0), best(40)];
+    let clearance_m = |result: &PlanResult| {
+        let proof = result.proof.clone().unwrap();
+        // The proof is that of this very plan.
+        assert_eq!(verify(result.plan.as_ref().unwrap()).unwrap(), proof);
+        proof.smallest_clearance.unwrap().distance_m
+    };
+    assert!(clearance_m(&smooth) >= clearance_m(&plain));
+    assert_eq!(smooth.plans, plain.plans);
+}
+
+#[test]
+fn a_smoother_plan_has_the_clearance_that_the_search_keeps() {
+    for seed in 0..4 {
+        let planned = |smooth| planned(&PlanRequest { smooth, seed, ..request(600) });
+        let clearance_m = |result: PlanResult| result.proof.unwrap().smallest_clearance.unwrap().distance_m;
+        let (before, after) = (clearance_m(planned(0)), clearance_m(planned(40)));
+        assert!(after >= before.min(0.002), "seed {seed}: {before} {after}");
+    }
 }
 
 #[test]

@@ -205,9 +205,7 @@ impl Builder {
             planner: PlannerFacts {
                 sampler: problem.sampling.sampler,
                 distance: problem.sampling.distance,
-                iterations: 0,
-                restarts: 0,
-                nodes: 0,
+                ..PlannerFacts::default()
             },
             start: self.start.clone(),
             steps: self.steps.clone(),

@@ -93,7 +93,7 @@ struct Picking<'a> {
 const GRASPS_PER_TRY: usize = 16;
 
 /// Does the rim stick out anywhere, so that it is worth asking where?
-fn overhangs<M: Manipulator>(
+pub(super) fn overhangs<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
     object: ObjectId,

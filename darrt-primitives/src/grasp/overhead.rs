@@ -104,6 +104,11 @@ impl GraspFamily for WallGrasps {
         self.grasp(azimuth, lean, rng.random_bool(0.5))
     }
 
+    fn tool_reach_m(&self) -> f64 {
+        let inset = self.options.inset.unwrap_or(0.5 * self.wall);
+        (self.radius - inset).hypot(0.5 * self.height - self.options.depth) + self.grip.tip_ahead
+    }
+
     fn grid(&self) -> Vec<Grasp> {
         let leans = &self.options.grid_leans;
         azimuths(self.options.grid_azimuths)
@@ -150,6 +155,10 @@ impl GraspFamily for OverheadGrasps {
     fn sample(&self, rng: &mut dyn rand::Rng) -> Grasp {
         let opening = sample_opening(&self.footprint, &self.openings, rng);
         self.grasp(opening, rng.random_bool(0.5))
+    }
+
+    fn tool_reach_m(&self) -> f64 {
+        self.tool_height.abs()
     }
 
     fn grid(&self) -> Vec<Grasp> {

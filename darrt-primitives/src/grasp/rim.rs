@@ -113,6 +113,15 @@ impl GraspFamily for RimGrasps {
         true
     }
 
+    fn tool_reach_m(&self) -> f64 {
+        let Self { radius, height, grip, options } = self;
+        let steepest = options.min_tilt.abs().max(options.max_tilt.abs());
+        // Neither pad is farther from the line along the hand than this, and the tool is half as far at most.
+        let [at_tip, _] = self.pad_distances(steepest);
+        let at_rim = (options.insertion - grip.tip_ahead).max(0.0).hypot(height / 2.0);
+        radius - options.insertion + grip.tip_ahead + at_tip.max(at_rim) / 2.0
+    }
+
     fn sample(&self, rng: &mut dyn rand::Rng) -> Grasp {
         let azimuth = rng.random_range(0.0..TAU);
         let tilt = rng.random_range(self.options.min_tilt..=self.options.max_tilt);

@@ -68,6 +68,10 @@ impl GraspFamily for SideGrasps {
         self.grasp(opening, from_right, rng.random_bool(0.5))
     }
 
+    fn tool_reach_m(&self) -> f64 {
+        (self.grip.tip_ahead - self.past_axis).hypot(self.offset_z)
+    }
+
     fn grid(&self) -> Vec<Grasp> {
         let ways = [(false, false), (false, true), (true, false), (true, true)];
         self.openings

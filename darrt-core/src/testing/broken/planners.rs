@@ -25,7 +25,7 @@ use crate::search::Strategy;
 use crate::solve::{Outcome, SolveOptions, solve};
 use crate::state::{ComponentSet, State};
 use crate::validity::FreePrefix;
-use crate::verify::{Refusal, Replay, Verifier};
+use crate::verify::{Refusal, Replay, Verified, Verifier};
 
 /// The robot straight to its target.
 const GO: Act = Act {
@@ -119,11 +119,17 @@ fn runs() -> Vec<Case> {
     }
     struct Moody;
     impl Verifier<Bench> for Moody {
-        fn verify(&self, _: &Bench, _: &State<Bench>, _: &dyn Goal<Bench>, _: &Plan<Bench>) -> Result<(), Refusal> {
+        fn verify(
+            &self,
+            _: &Bench,
+            _: &State<Bench>,
+            _: &dyn Goal<Bench>,
+            _: &Plan<Bench>,
+        ) -> Result<Verified, Refusal> {
             // The first runs are to agree with each other; the law's own question comes last.
             let is_first = VERDICTS.replace(VERDICTS.get() + 1) < 3;
             let refusal = || Refusal { step: None, at: 0.0, reason: "not today".to_owned() };
-            if is_first { Ok(()) } else { Err(refusal()) }
+            if is_first { Ok(Verified::default()) } else { Err(refusal()) }
         }
     }
     vec![

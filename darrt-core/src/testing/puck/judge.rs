@@ -9,7 +9,7 @@ use crate::plan::Plan;
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, State};
 use crate::validity::{Blame, BlockKind, FreePrefix, Validity};
-use crate::verify::{Refusal, Replay, Verifier};
+use crate::verify::{Refusal, Replay, Verified, Verifier};
 
 /// Metres between the states that the judge looks at.
 pub const SPACING_M: f64 = 1e-3;
@@ -116,8 +116,8 @@ impl Verifier<PuckWorld> for Judge {
         start: &State<PuckWorld>,
         goal: &dyn Goal<PuckWorld>,
         plan: &Plan<PuckWorld>,
-    ) -> Result<(), Refusal> {
-        self.replay.verify(m, start, goal, plan)?;
+    ) -> Result<Verified, Refusal> {
+        let verified = self.replay.verify(m, start, goal, plan)?;
         for (index, _) in plan.steps().iter().enumerate() {
             let states = [0.0, 0.5, 1.0].map(|s| plan.at(m, index, s));
             let [Some(before), Some(during), Some(after)] = states else { continue };
@@ -130,6 +130,6 @@ impl Verifier<PuckWorld> for Judge {
                 }
             }
         }
-        Ok(())
+        Ok(verified)
     }
 }

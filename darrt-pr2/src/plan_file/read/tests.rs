@@ -1,5 +1,7 @@
 use super::*;
-use crate::plan_file::{AllowedContact, ContactReason, Hold, PlanFormat, PlannerFacts, Pose, Step, Waypoint};
+use crate::plan_file::{
+    AllowedContact, ContactReason, CostName, Hold, PlanFormat, PlannerFacts, Pose, SearchName, Step, Waypoint,
+};
 use crate::problem_file::{DistanceName, PrimitiveName, SamplerName, builtin};
 use std::collections::BTreeMap;
 
@@ -28,6 +30,9 @@ pub(in crate::plan_file) fn sample() -> PlanFile {
         planner: PlannerFacts {
             sampler: SamplerName::RobotOrObjects,
             distance: DistanceName::Greedy,
+            searches: vec![SearchName::Darrt, SearchName::Connect],
+            improve: Some(CostName::Steps),
+            smooth: 100,
             iterations: 10,
             restarts: 1,
             nodes: 5,

@@ -1,0 +1,129 @@
+//! How far the hand must travel before it can push or grasp an object: bounds for DISTANCE (paper section 4.3). They ask
+//! neither the arm nor the obstacles, so they cost next to nothing, and every push and every grasp that is found travels
+//! at least as far.
+
+use std::f64::consts::{PI, TAU};
+
+use darrt_core::domain::Domain;
+use darrt_core::state::ObjectId;
+use darrt_geom::support::SupportSurface;
+use nalgebra::{Isometry3, Point2, Point3, Vector2};
+
+use super::pick::overhangs;
+use crate::contact::RimContact;
+use crate::manipulator::Manipulator;
+use crate::push::edge_stop::EdgeRule;
+use crate::tabletop::{PushSettings, Tabletop, TabletopState};
+
+/// What stands for a way that there is not, metres: longer than any, and still a number that can be added.
+pub const NO_WAY_M: f64 = 1e9;
+
+/// Rounding of the depth of a place where a push may end, metres; less than the push itself allows.
+const DEPTH_ROUNDING_M: f64 = 5e-10;
+
+/// Metres from the tool to the nearest contact from which [`push`](super::push::push) may bring `object` towards `target`:
+/// behind it, seen from there. Where the push ends at the edge, it may be any of an arc of contacts, and near a corner of
+/// the surface any on the rim. [`NO_WAY_M`] for what cannot be pushed.
+///
+/// # Laws
+/// At most the travel of every such push. The same for two targets above each other.
+pub fn to_push_m<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    object: ObjectId,
+    target: &Isometry3<f64>,
+) -> f64 {
+    let place = || {
+        let radius = m.movable(object).filter(|o| o.is_pushable)?.round_radius_m?;
+        let surface = from.mode.support_of(object).and_then(|s| m.surface(s))?;
+        let (settings, hand) = (&m.settings().push, m.manipulator().hand());
+        let contact = RimContact::new(radius, settings.gap_m, hand.tip_half_width_m()).ok()?;
+        let center = flat(from.object(object)?);
+        let height_m = surface.height() + settings.fingertip_clearance_m + hand.tip_beyond_tool_m(settings.gap_m);
+        let contacts = Contacts { center, setback_m: contact.setback(), height_m };
+        Some(contacts.distance_m(&tool(m, from), &ends(settings, surface, &flat(target))))
+    };
+    place().unwrap_or(NO_WAY_M)
+}
+
+/// Metres from the tool to the nearest place from which `object` can be grasped as far as its families know
+/// ([`tool_reach_m`](crate::grasp::GraspFamily::tool_reach_m)), whichever side of the object that is on; [`NO_WAY_M`]
+/// where no grasp fits, as for a plate in the middle of a table.
+///
+/// # Laws
+/// At most the travel of every [`pick`](super::pick::pick).
+pub fn to_grasp_m<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>, object: ObjectId) -> f64 {
+    let (Some(movable), Some(pose)) = (m.movable(object), from.object(object)) else { return NO_WAY_M };
+    let overhangs = overhangs(m, from, object, movable, pose);
+    let fitting = movable.grasps.iter().filter(|family| !family.needs_overhang() || overhangs);
+    let gap_m = (tool(m, from) - Point3::from(pose.translation.vector)).norm();
+    fitting.map(|family| (gap_m - family.tool_reach_m()).max(0.0)).min_by(f64::total_cmp).unwrap_or(NO_WAY_M)
+}
+
+/// Where the object may be when it has been pushed.
+enum Ends {
+    /// Somewhere on the segment, or on the way there.
+    Between(Point2<f64>, Point2<f64>),
+    /// In any direction.
+    Anywhere,
+}
+
+/// Where a push towards `target` may end.
+fn ends(settings: &PushSettings, surface: &SupportSurface, target: &Point2<f64>) -> Ends {
+    let [least, most] = settings.edge_distance_m;
+    if settings.edge_rule == EdgeRule::LineCrossing || surface.depth(target) >= least {
+        return Ends::Between(*target, *target);
+    }
+    let most = most.max(least);
+    let edge = surface.nearest_edge_point(target);
+    let [nearest, farthest] = [least, most].map(|inside| edge.point - inside * edge.outward.into_inner());
+    // Where the farthest end is far enough from every other edge, the nearer ones are as well.
+    let is_alone = surface.depth(&farthest) >= most - DEPTH_ROUNDING_M;
+    if is_alone { Ends::Between(nearest, farthest) } else { Ends::Anywhere }
+}
+
+/// The circle on which the tool stands to push an object.
+struct Contacts {
+    center: Point2<f64>,
+    setback_m: f64,
+    height_m: f64,
+}
+
+impl Contacts {
+    /// From `tool` to the nearest contact behind the object for one of `ends`.
+    fn distance_m(&self, tool: &Point3<f64>, ends: &Ends) -> f64 {
+        let aside = tool.xy() - self.center;
+        let to_circle_m = (aside.norm() - self.setback_m).abs();
+        let across_m = match ends {
+            Ends::Anywhere => to_circle_m,
+            Ends::Between(a, b) => self.to_arc_m(&aside, &(self.center - a), &(self.center - b)).unwrap_or(to_circle_m),
+        };
+        across_m.hypot(tool.z - self.height_m)
+    }
+
+    /// From `aside` of the centre to the arc between two directions, the shorter one; `None` where its middle part is
+    /// nearest, as on the whole circle, or where there is no direction.
+    fn to_arc_m(&self, aside: &Vector2<f64>, a: &Vector2<f64>, b: &Vector2<f64>) -> Option<f64> {
+        let angle = |v: &Vector2<f64>| v.y.atan2(v.x);
+        let (span, at) = (turned(angle(b) - angle(a)), turned(angle(aside) - angle(a)));
+        let is_between = at * span > 0.0 && at.abs() < span.abs();
+        if is_between {
+            return None;
+        }
+        let [a, b] = [a, b].map(|v| v.try_normalize(0.0).map(|v| (aside - v * self.setback_m).norm()));
+        Some(a?.min(b?))
+    }
+}
+
+/// The same turn, in `[-pi, pi)`.
+fn turned(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(TAU) - PI
+}
+
+fn flat(pose: &Isometry3<f64>) -> Point2<f64> {
+    Point2::new(pose.translation.x, pose.translation.y)
+}
+
+fn tool<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>) -> Point3<f64> {
+    Point3::from(m.working_point(&from.robot))
+}
