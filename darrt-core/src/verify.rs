@@ -43,7 +43,8 @@ pub struct Verified {
 
 /// Judges plans, independently of the planner and of the primitives.
 pub trait Verifier<D: Domain>: Send + Sync {
-    /// Accepts, and says what it measured, or refuses. One that takes long should give up, with any refusal, when the search is cancelled.
+    /// Accepts, and says what it measured, or refuses. One that takes long should give up, with any refusal, when the search is
+    /// cancelled.
     ///
     /// # Errors
     /// The first [`Refusal`] found.
@@ -95,9 +96,9 @@ impl<D: Domain> Solution<D> {
         self.verified.clearance_m
     }
 
-    /// All that the verifier said of the plan.
-    pub fn verified(&self) -> &Verified {
-        &self.verified
+    /// The plan, and all that the verifier said of it.
+    pub fn into_parts(self) -> (Plan<D>, Verified) {
+        (self.plan, self.verified)
     }
 }
 

@@ -16,7 +16,7 @@ use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
 use darrt_core::smooth::SmoothOptions;
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
-use darrt_core::verify::{Refusal, Verified, Verifier};
+use darrt_core::verify::{Refusal, Solution, Verified, Verifier};
 use darrt_primitives::detour::Detour;
 use darrt_primitives::validity::SceneValidity;
 
@@ -133,7 +133,7 @@ struct FileVerifier {
 }
 
 /// What goes with a plan that was accepted: its steps as they are in the file, and what the verifier saw.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Judged {
     steps: Vec<Step>,
     proof: Proof,
@@ -260,15 +260,18 @@ fn result(
         nodes: outcome.nodes as u64,
     };
     let m = prepared.problem.domain();
-    let judged = outcome.solution.as_ref().and_then(|solution| {
-        let judged = solution.verified().evidence.as_ref()?.downcast_ref::<Judged>()?;
-        Some((solution.plan(), judged))
+    let judged = outcome.solution.map(Solution::into_parts).and_then(|(plan, verified)| {
+        let judged = verified.evidence?.downcast().ok()?;
+        Some((plan, Arc::<Judged>::unwrap_or_clone(judged)))
     });
-    let plan =
-        judged.map(|(plan, judged)| prepared.exporter.with_steps(m, plan, judged.steps.clone(), request.seed, facts));
+    let (plan, proof) = judged
+        .map(|(plan, Judged { steps, proof })| {
+            (prepared.exporter.with_steps(m, &plan, steps, request.seed, facts), proof)
+        })
+        .unzip();
     PlanResult {
         plan,
-        proof: judged.map(|(_, judged)| judged.proof.clone()),
+        proof,
         plans: 0,
         stop: outcome.stop,
         accounts: outcome.accounts,
