@@ -16,9 +16,9 @@ use darrt_pr2::world::World;
 /// Issue: at most half a kilobyte for each node, so that a million nodes take less than a gigabyte.
 const BYTES_PER_NODE: u64 = 512;
 
-/// With the instances: nodes are a metre apart, so an instance, which holds the state it starts from and its waypoints, is
-/// shared by two or three of them.
-const GROWN_BYTES_PER_NODE: u64 = 1536;
+/// With the instances: motions are deferred, so nearly every node has an instance of its own, which holds where it starts and
+/// its waypoints.
+const GROWN_BYTES_PER_NODE: u64 = 1100;
 
 /// Random nodes with one instance among them: what the tree itself takes.
 #[test]
@@ -37,10 +37,11 @@ fn a_million_nodes_fit_into_half_a_gigabyte() {
 
 /// A tree that the planner has grown: with the instances of its edges.
 #[test]
-fn a_grown_tree_takes_a_kilobyte_and_a_half_per_node() {
+fn a_grown_tree_takes_a_little_more_than_a_kilobyte_per_node() {
     let (prepared, strategy) = prepared();
     let mut darrt = Darrt::new(&prepared.problem, &strategy, 7, 0, usize::MAX);
-    (0..400).for_each(|_| drop(darrt.step()));
+    // Until there is a tree of some size: as repairs take back what is blocked, it also shrinks.
+    (0..2000).for_each(|_| drop(darrt.step()));
     let nodes = darrt.tree().len() as u64;
     let mut instances: Vec<_> =
         darrt.tree().iter().filter_map(|(_, n)| n.edge.as_ref()).map(|e| Arc::clone(&e.instance)).collect();

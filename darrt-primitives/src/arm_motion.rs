@@ -3,6 +3,7 @@
 
 use std::fmt;
 
+use darrt_core::domain::Domain;
 use darrt_core::motion::Motion;
 use darrt_core::space::ComponentSpace;
 use darrt_core::state::ObjectId;
@@ -11,6 +12,7 @@ use nalgebra::Isometry3;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Held, Mode};
 use crate::tabletop::{Tabletop, TabletopState};
+use crate::way::Way;
 
 /// What moves along with the hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,14 +35,53 @@ pub struct Waypoint<J> {
 }
 
 /// A motion through waypoints. Its parameter is proportional to the bound on the travel.
+///
+/// Nearly every node of a tree has a motion of its own, so it keeps no more of the state that it starts from than it must.
 pub struct ArmMotion<M: Manipulator> {
-    start: TabletopState<M>,
-    waypoints: Vec<Waypoint<M::Joints>>,
-    knots: Vec<f64>,
-    carried: Carried,
+    way: Way<M::Joints>,
+    /// Where the objects are at the start.
+    objects: Box<[Isometry3<f64>]>,
+    /// `None`: those of a single leg.
+    knots: Option<Box<[f64]>>,
+    load: Load,
+    before: Mode,
     during: Mode,
     after: Mode,
     length_m: f64,
+}
+
+/// The knots of a motion of a single leg.
+const SINGLE_LEG: [f64; 2] = [0.0, 1.0];
+
+/// What moves along, as it is kept.
+enum Load {
+    Nothing,
+    /// What the mode on the way says that the hand holds: nearly always that is what is carried.
+    AsHeld,
+    Held(Box<Held>),
+    Pushed(Box<Pushed>),
+}
+
+/// An object that slides in a straight line.
+struct Pushed {
+    object: ObjectId,
+    to: Isometry3<f64>,
+    /// How much of its way is done at every waypoint, the start first.
+    shares: Box<[f64]>,
+}
+
+impl Load {
+    fn new<J>(carried: Carried, waypoints: &[Waypoint<J>], during: &Mode) -> Self {
+        match carried {
+            Carried::Nothing => Self::Nothing,
+            Carried::Held(held) if during.held() == Some(&held) => Self::AsHeld,
+            Carried::Held(held) => Self::Held(Box::new(held)),
+            Carried::Pushed(object, to) => {
+                let shares = std::iter::once(0.0).chain(waypoints.iter().map(|w| w.pushed)).collect();
+                Self::Pushed(Box::new(Pushed { object, to, shares }))
+            }
+        }
+    }
 }
 
 impl<M: Manipulator> ArmMotion<M> {
@@ -55,46 +96,72 @@ impl<M: Manipulator> ArmMotion<M> {
         after: Mode,
     ) -> Self {
         let reach_m = m.held_reach_m(&during);
-        let mut all = Vec::with_capacity(waypoints.len() + 1);
-        all.push(Waypoint { robot: start.robot, pushed: 0.0 });
-        all.extend_from_slice(waypoints);
-        let mut travelled = Vec::with_capacity(all.len());
+        let mut knots = Vec::with_capacity(waypoints.len() + 1);
         let mut length_m = 0.0;
-        travelled.push(0.0);
-        for pair in all.windows(2) {
-            if let [a, b] = pair {
-                length_m += m.manipulator().travel_m(&a.robot, &b.robot, reach_m);
-                travelled.push(length_m);
-            }
+        let mut here = &start.robot;
+        knots.push(0.0);
+        for Waypoint { robot: next, .. } in waypoints {
+            length_m += m.manipulator().travel_m(here, next, reach_m);
+            knots.push(length_m);
+            here = next;
         }
-        let knots = travelled.iter().map(|s| if length_m > 0.0 { s / length_m } else { 0.0 }).collect();
-        Self { start: start.clone(), waypoints: all, knots, carried, during, after, length_m }
+        for knot in &mut knots {
+            *knot = if length_m > 0.0 { *knot / length_m } else { 0.0 };
+        }
+        Self {
+            way: Way::new(start.robot, waypoints.iter().map(|w| w.robot)),
+            objects: start.objects.as_slice().into(),
+            knots: (knots != SINGLE_LEG).then(|| knots.into_boxed_slice()),
+            load: Load::new(carried, waypoints, &during),
+            before: start.mode.clone(),
+            during,
+            after,
+            length_m,
+        }
     }
 
-    /// The configurations that it passes through, the start first.
-    pub fn waypoints(&self) -> &[Waypoint<M::Joints>] {
-        &self.waypoints
+    /// What it passes through, the start first.
+    pub fn waypoints(&self) -> impl Iterator<Item = Waypoint<M::Joints>> {
+        let pushed = |index| match &self.load {
+            Load::Pushed(pushed) => pushed.shares.get(index).copied(),
+            _ => None,
+        };
+        let robots = (0..).map_while(|index| Some((index, self.way.get(index)?)));
+        robots.map(move |(index, robot)| Waypoint { robot, pushed: pushed(index).unwrap_or(0.0) })
     }
 
     /// What moves along.
-    pub fn carried(&self) -> &Carried {
-        &self.carried
+    pub fn carried(&self) -> Carried {
+        match &self.load {
+            Load::Nothing => Carried::Nothing,
+            Load::AsHeld => self.during.held().map_or(Carried::Nothing, |held| Carried::Held(*held)),
+            Load::Held(held) => Carried::Held(**held),
+            Load::Pushed(pushed) => Carried::Pushed(pushed.object, pushed.to),
+        }
     }
 
-    fn waypoint_at(&self, m: &Tabletop<M>, t: f64) -> Waypoint<M::Joints> {
-        use darrt_core::domain::Domain;
-        let first = Waypoint { robot: self.start.robot, pushed: 0.0 };
-        let last = self.waypoints.last().copied().unwrap_or(first);
+    /// The leg that `t` lies on and how much of it is done; `None` at the end.
+    fn leg_at(&self, t: f64) -> Option<(usize, f64)> {
         if t >= 1.0 {
-            return last;
+            return None;
         }
-        let leg = self.knots.partition_point(|k| *k <= t);
-        let (Some(a), Some(b)) = (self.waypoints.get(leg.wrapping_sub(1)), self.waypoints.get(leg)) else {
-            return last;
-        };
-        let (Some(from), Some(to)) = (self.knots.get(leg.wrapping_sub(1)), self.knots.get(leg)) else { return last };
-        let s = (t - from) / (to - from);
-        Waypoint { robot: m.robot().interpolate(&a.robot, &b.robot, s), pushed: a.pushed + (b.pushed - a.pushed) * s }
+        let knots = self.knots();
+        let end = knots.partition_point(|k| *k <= t);
+        let begin = end.checked_sub(1)?;
+        let (from, to) = (knots.get(begin)?, knots.get(end)?);
+        Some((begin, (t - from) / (to - from)))
+    }
+
+    fn robot_at(&self, m: &Tabletop<M>, leg: Option<(usize, f64)>) -> Configuration<M::Joints> {
+        let ends = leg.and_then(|(leg, s)| Some((self.way.get(leg)?, self.way.get(leg + 1)?, s)));
+        ends.map_or_else(|| self.way.last(), |(a, b, s)| m.robot().interpolate(&a, &b, s))
+    }
+}
+
+impl Pushed {
+    fn share_at(&self, leg: Option<(usize, f64)>) -> f64 {
+        let ends = leg.and_then(|(leg, s)| Some((self.shares.get(leg)?, self.shares.get(leg + 1)?, s)));
+        ends.map_or_else(|| self.shares.last().copied().unwrap_or(0.0), |(a, b, s)| a + (b - a) * s)
     }
 }
 
@@ -104,30 +171,36 @@ impl<M: Manipulator> Motion<Tabletop<M>> for ArmMotion<M> {
     }
 
     fn knots(&self) -> &[f64] {
-        &self.knots
+        self.knots.as_deref().unwrap_or(&SINGLE_LEG)
     }
 
     fn at_into(&self, m: &Tabletop<M>, t: f64, out: &mut TabletopState<M>) {
         let t = t.clamp(0.0, 1.0);
-        out.clone_from(&self.start);
+        out.objects.clear();
+        out.objects.extend_from_slice(&self.objects);
         if t <= 0.0 {
+            out.robot = *self.way.start();
+            out.mode.clone_from(&self.before);
             return;
         }
-        let here = self.waypoint_at(m, t);
-        out.robot = here.robot;
-        match self.carried {
-            Carried::Nothing => {}
-            Carried::Held(held) => {
-                if let Some(pose) = out.objects.get_mut(held.object.index()) {
-                    *pose = m.manipulator().world_from_tool(&here.robot) * held.tool_from_object;
-                }
-            }
-            Carried::Pushed(object, to) => {
-                if let Some(pose) = out.objects.get_mut(object.index()) {
+        let leg = self.leg_at(t);
+        out.robot = self.robot_at(m, leg);
+        let held = match &self.load {
+            Load::Nothing => None,
+            Load::AsHeld => self.during.held(),
+            Load::Held(held) => Some(&**held),
+            Load::Pushed(pushed) => {
+                if let Some(pose) = out.objects.get_mut(pushed.object.index()) {
                     let from = pose.translation.vector;
-                    pose.translation.vector = from + (to.translation.vector - from) * here.pushed;
+                    pose.translation.vector = from + (pushed.to.translation.vector - from) * pushed.share_at(leg);
                 }
+                None
             }
+        };
+        if let Some(held) = held
+            && let Some(pose) = out.objects.get_mut(held.object.index())
+        {
+            *pose = m.manipulator().world_from_tool(&out.robot) * held.tool_from_object;
         }
         out.mode.clone_from(if t >= 1.0 { &self.after } else { &self.during });
     }
@@ -136,8 +209,8 @@ impl<M: Manipulator> Motion<Tabletop<M>> for ArmMotion<M> {
 impl<M: Manipulator> fmt::Debug for ArmMotion<M> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ArmMotion")
-            .field("waypoints", &self.waypoints)
-            .field("carried", &self.carried)
+            .field("waypoints", &self.waypoints().collect::<Vec<_>>())
+            .field("carried", &self.carried())
             .field("during", &self.during)
             .field("after", &self.after)
             .finish_non_exhaustive()

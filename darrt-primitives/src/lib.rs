@@ -35,4 +35,5 @@ pub mod tabletop;
 #[cfg(feature = "testing")]
 pub mod testing;
 pub mod validity;
+mod way;
 pub mod wish;

@@ -1,5 +1,7 @@
 //! What rests on what, what is held, and how the hand stands to the objects: the mode of a state.
 
+use std::sync::Arc;
+
 use darrt_core::state::ObjectId;
 use nalgebra::Isometry3;
 use smallvec::SmallVec;
@@ -37,30 +39,54 @@ pub struct Held {
 /// | resting, hand beside it | [`Mode::disengaged`] | resting, hand free |
 /// | resting, nothing held | [`Mode::attached`] | held |
 /// | held | [`Mode::released_on`] | resting, hand beside it |
-#[derive(Debug, Clone, PartialEq)]
+///
+/// A clone shares what it was cloned from: most nodes and motions of a tree are in one of few modes.
+#[derive(Debug, PartialEq)]
 pub struct Mode {
-    rests_on: SmallVec<[Option<SurfaceId>; 8]>,
-    held: Option<Held>,
+    facts: Arc<Facts>,
     /// The object beside, around or under which the hand stands: it must retreat in a straight line before it may do
-    /// anything else.
+    /// anything else. Not among the facts, so that they are shared before, beside it and after.
     engaged: Option<ObjectId>,
+}
+
+/// What a mode says of every object and of the fingers.
+#[derive(Debug, Clone, PartialEq)]
+struct Facts {
+    rests_on: SmallVec<[Option<SurfaceId>; 8]>,
+    /// Apart, because in most modes there is none.
+    held: Option<Box<Held>>,
     gap_m: f64,
+}
+
+impl Clone for Mode {
+    fn clone(&self) -> Self {
+        Self { facts: Arc::clone(&self.facts), engaged: self.engaged }
+    }
+
+    /// Motions write their mode again and again into the same state: nothing is counted as long as it stays.
+    fn clone_from(&mut self, source: &Self) {
+        if !Arc::ptr_eq(&self.facts, &source.facts) {
+            self.facts = Arc::clone(&source.facts);
+        }
+        self.engaged = source.engaged;
+    }
 }
 
 impl Mode {
     /// Every object rests on the given surface, the hand is free and open by `gap_m`.
     pub fn resting(rests_on: impl IntoIterator<Item = SurfaceId>, gap_m: f64) -> Self {
-        Self { rests_on: rests_on.into_iter().map(Some).collect(), held: None, engaged: None, gap_m }
+        let rests_on = rests_on.into_iter().map(Some).collect();
+        Self { facts: Arc::new(Facts { rests_on, held: None, gap_m }), engaged: None }
     }
 
     /// The surface that `object` rests on; `None` while it is held.
     pub fn support_of(&self, object: ObjectId) -> Option<SurfaceId> {
-        self.rests_on.get(object.index()).copied().flatten()
+        self.facts.rests_on.get(object.index()).copied().flatten()
     }
 
     /// What the hand holds.
     pub fn held(&self) -> Option<&Held> {
-        self.held.as_ref()
+        self.facts.held.as_deref()
     }
 
     /// The object that the hand must first retreat from.
@@ -70,22 +96,30 @@ impl Mode {
 
     /// Gap between the finger pads, metres.
     pub fn gap_m(&self) -> f64 {
-        self.gap_m
+        self.facts.gap_m
     }
 
     /// Is the hand free: nothing held and nothing to retreat from?
     pub fn is_hand_free(&self) -> bool {
-        self.held.is_none() && self.engaged.is_none()
+        self.facts.held.is_none() && self.engaged.is_none()
     }
 
     /// The same with another opening of the empty hand. `None` while something is held.
     pub fn opened_to(&self, gap_m: f64) -> Option<Self> {
-        self.held.is_none().then(|| Self { gap_m, ..self.clone() })
+        if self.facts.held.is_some() {
+            return None;
+        }
+        let mut mode = self.clone();
+        // Not `==`, for which the zeros are one.
+        if self.facts.gap_m.to_bits() != gap_m.to_bits() {
+            mode.facts = Arc::new(Facts { gap_m, ..Facts::clone(&self.facts) });
+        }
+        Some(mode)
     }
 
     /// The hand has come beside `object`. `None` if it holds something or the object does not rest.
     pub fn engaged_with(&self, object: ObjectId) -> Option<Self> {
-        (self.held.is_none() && self.support_of(object).is_some())
+        (self.facts.held.is_none() && self.support_of(object).is_some())
             .then(|| Self { engaged: Some(object), ..self.clone() })
     }
 
@@ -96,20 +130,20 @@ impl Mode {
 
     /// The hand has closed on a resting object. `None` if it already holds something or the object does not rest.
     pub fn attached(&self, held: Held, gap_m: f64) -> Option<Self> {
-        if self.held.is_some() || self.support_of(held.object).is_none() {
+        if self.facts.held.is_some() || self.support_of(held.object).is_none() {
             return None;
         }
-        let mut mode = Self { held: Some(held), engaged: None, gap_m, ..self.clone() };
-        *mode.rests_on.get_mut(held.object.index())? = None;
-        Some(mode)
+        let mut facts = Facts { held: Some(Box::new(held)), gap_m, ..Facts::clone(&self.facts) };
+        *facts.rests_on.get_mut(held.object.index())? = None;
+        Some(Self { facts: Arc::new(facts), engaged: None })
     }
 
     /// The held object stands on `surface` and the hand has opened to `gap_m` around it. `None` if nothing is held.
     pub fn released_on(&self, surface: SurfaceId, gap_m: f64) -> Option<Self> {
-        let object = self.held?.object;
-        let mut mode = Self { held: None, engaged: Some(object), gap_m, ..self.clone() };
-        *mode.rests_on.get_mut(object.index())? = Some(surface);
-        Some(mode)
+        let object = self.held()?.object;
+        let mut facts = Facts { held: None, gap_m, ..Facts::clone(&self.facts) };
+        *facts.rests_on.get_mut(object.index())? = Some(surface);
+        Some(Self { facts: Arc::new(facts), engaged: Some(object) })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Bounds on the distance from many nodes at once: flat copies of the few numbers that a distance depends on.
 //!
-//! A node is 300 bytes and more, a distance reads a handful of numbers of it. Those are copied here in single precision,
+//! A node is 200 bytes and more, a distance reads a handful of numbers of it. Those are copied here in single precision,
 //! coordinate by coordinate in blocks of [`LANES`] nodes, so that one pass over a block bounds all of its nodes. Blocks have
 //! boxes around them, boxes have boxes around them, [`LANES`] to one; a query opens the box of the least bound first and
 //! looks at a node itself only where its own bound does not rule it out. Whatever is rounded is allowed for, so the answer

@@ -330,7 +330,7 @@ fn a_smoother_plan_gives_away_clearance_down_to_the_bound_only() {
         .unwrap();
     assert!(smooth.0 < rough.0, "{rough:?} {smooth:?}");
     let bounded = |clearance_m, measures| planned(seed, SmoothOptions { clearance_m, ..tries(60) }, measures);
-    for above in [(smooth.1 + rough.1) / 2.0, rough.1, f64::INFINITY] {
+    for above in [f64::midpoint(smooth.1, rough.1), rough.1, f64::INFINITY] {
         assert_eq!(bounded(above, true), rough, "less clear than {above} m and than before");
         assert_eq!(bounded(above, false), smooth, "nothing is measured");
     }

@@ -72,7 +72,7 @@ fn smoothing_gives_no_clearance_away_when_clearance_is_improved() {
 #[test]
 fn a_smoother_plan_has_the_clearance_that_the_search_keeps() {
     for seed in 0..4 {
-        let planned = |smooth| planned(&PlanRequest { smooth, seed, ..request(600) });
+        let planned = |smooth| planned(&PlanRequest { seed, smooth, ..request(600) });
         let clearance_m = |result: PlanResult| result.proof.unwrap().smallest_clearance.unwrap().distance_m;
         let (before, after) = (clearance_m(planned(0)), clearance_m(planned(40)));
         assert!(after >= before.min(0.002), "seed {seed}: {before} {after}");

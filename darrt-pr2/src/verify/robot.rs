@@ -239,7 +239,9 @@ mod tests {
             let moved: Vec<f64> = values.iter().map(|v| v + rng.random_range(-0.05..0.05)).collect();
             robot.link_poses(&values, &mut before);
             robot.link_poses(&moved, &mut after);
-            after.iter_mut().for_each(|pose| *pose = world_from_robot(&[0.1, 0.0, 0.02]) * *pose);
+            for pose in &mut after {
+                *pose = world_from_robot(&[0.1, 0.0, 0.02]) * *pose;
+            }
             let bound = 0.1
                 + 0.02 * rates[values.len()]
                 + values.iter().zip(&moved).zip(&rates).map(|((a, b), r)| (a - b).abs() * r).sum::<f64>();

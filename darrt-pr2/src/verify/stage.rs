@@ -325,7 +325,9 @@ impl Stage {
     fn look(&mut self, index: usize, enough_m: f64, step: u32, time: f64) -> Result<f64, Hit> {
         let nearest = self.nearest_m();
         let Pair { a, b, .. } = self.pairs[index];
-        [a, b].into_iter().for_each(|solid| self.note(solid));
+        for solid in [a, b] {
+            self.note(solid);
+        }
         let pair = &self.pairs[index];
         let (solid_a, solid_b) = (&self.solids[a], &self.solids[b]);
         let mut lifted = self.poses[a];
