@@ -97,7 +97,8 @@ impl Pr2 {
         let self_pairs = link_pairs(&model, side).iter().filter_map(|[a, b]| Some((place(*a)?, place(*b)?))).collect();
         let base_from_link = rigid.iter().filter_map(|l| at_origin.get(*l).copied()).collect();
         let steps = 0..=20_u32;
-        let joint_radius = steps.map(|i| model.joint_radius(side, HELD_STEP * f64::from(i))).collect();
+        let extents = model.arm_extents(side);
+        let joint_radius = steps.map(|i| extents.joint_radius(HELD_STEP * f64::from(i))).collect();
         let base_radius = model.travel_bound(side, Self::MAX_HELD_REACH.min(0.3), &rest).base;
         let chain = ArmChain::new(side, rest.torso_m);
         let arm_frames = moving.iter().map(|b| b.frame).collect();

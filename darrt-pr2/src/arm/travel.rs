@@ -40,39 +40,34 @@ impl Pr2Model {
     /// Radii of the joints of one arm, m, open fingers included; `held_radius`: radius of a ball about the tool frame
     /// that holds everything the hand carries, m (0 for nothing).
     pub fn joint_radius(&self, side: Side, held_radius: f64) -> [f64; 7] {
-        let hand = self.hand_extent(side);
-        let wrist = hand.centre.max(TOOL + held_radius);
-        let roll = hand.axis_x.max(held_radius);
-        let elbow = self.extent(side, &[Frame::ElbowFlex, Frame::ForearmRoll]);
-        let forearm = self.extent(side, &[Frame::ForearmRoll]);
-        let beyond_elbow = elbow.centre.max(FOREARM + wrist);
-        let upper_arm = self.extent(side, &[Frame::UpperArmRoll]);
-        let lift = self.extent(side, &[Frame::ShoulderLift, Frame::UpperArmRoll]);
-        let beyond_lift = lift.centre.max(UPPER_ARM + beyond_elbow);
-        let pan = self.extent(side, &[Frame::ShoulderPan]);
-        [
-            pan.axis_z.max(UPPER_ARM_OFFSET + beyond_lift),
-            beyond_lift,
-            upper_arm.axis_x.max(beyond_elbow),
-            beyond_elbow,
-            forearm.axis_x.max(wrist),
-            wrist,
-            roll,
-        ]
+        self.arm_extents(side).joint_radius(held_radius)
+    }
+
+    /// What [`joint_radius`](Self::joint_radius) is made of, for several things held.
+    pub(crate) fn arm_extents(&self, side: Side) -> ArmExtents {
+        ArmExtents {
+            hand: self.hand_extent(side),
+            elbow: self.extent(side, &[Frame::ElbowFlex, Frame::ForearmRoll]),
+            forearm: self.extent(side, &[Frame::ForearmRoll]),
+            upper_arm: self.extent(side, &[Frame::UpperArmRoll]),
+            lift: self.extent(side, &[Frame::ShoulderLift, Frame::UpperArmRoll]),
+            pan: self.extent(side, &[Frame::ShoulderPan]),
+        }
     }
 
     /// Levers of one arm, m, a row per link in the order of [`arm_bodies`](Self::arm_bodies): largest distance from the axis
     /// of each joint to any point of the link, 0 for a joint that does not move it; fingers at any opening.
     pub fn link_levers(&self, side: Side) -> Vec<[f64; 7]> {
-        self.arm_bodies(side).iter().map(|arm_body| self.levers_of(side, arm_body)).collect()
+        let hand = self.hand_extent(side);
+        self.arm_bodies(side).iter().map(|arm_body| self.levers_of(arm_body, hand)).collect()
     }
 
-    fn levers_of(&self, side: Side, arm_body: &ArmBody) -> [f64; 7] {
+    fn levers_of(&self, arm_body: &ArmBody, hand: Extent) -> [f64; 7] {
         let mut own = Extent::default();
         match arm_body.frame {
             // The whole hand's extent bounds each finger's at any opening; they differ by centimetres only.
             Frame::LeftFinger | Frame::RightFinger | Frame::LeftFingerTip | Frame::RightFingerTip => {
-                own = self.hand_extent(side);
+                own = hand;
             }
             _ => {
                 if let Some(body) = self.body(arm_body.link) {
@@ -170,6 +165,36 @@ impl Pr2Model {
         extent.centre = extent.centre.max(fingers.centre + between);
         extent.axis_x = extent.axis_x.max(fingers.axis_x + between);
         extent
+    }
+}
+
+/// How far the parts of one arm extend.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ArmExtents {
+    hand: Extent,
+    elbow: Extent,
+    forearm: Extent,
+    upper_arm: Extent,
+    lift: Extent,
+    pan: Extent,
+}
+
+impl ArmExtents {
+    /// See [`Pr2Model::joint_radius`].
+    pub(crate) fn joint_radius(&self, held_radius: f64) -> [f64; 7] {
+        let wrist = self.hand.centre.max(TOOL + held_radius);
+        let roll = self.hand.axis_x.max(held_radius);
+        let beyond_elbow = self.elbow.centre.max(FOREARM + wrist);
+        let beyond_lift = self.lift.centre.max(UPPER_ARM + beyond_elbow);
+        [
+            self.pan.axis_z.max(UPPER_ARM_OFFSET + beyond_lift),
+            beyond_lift,
+            self.upper_arm.axis_x.max(beyond_elbow),
+            beyond_elbow,
+            self.forearm.axis_x.max(wrist),
+            wrist,
+            roll,
+        ]
     }
 }
 

@@ -14,6 +14,8 @@ use darrt_primitives::kinematics::urdf::JointKind;
 #[derive(Debug, Clone)]
 pub struct JointTable {
     entries: BTreeMap<Arc<str>, Entry>,
+    /// The same names, every value 0.
+    zeros: BTreeMap<Arc<str>, f64>,
     free: usize,
 }
 
@@ -32,14 +34,20 @@ impl JointTable {
     pub fn new(robot: &RobotDescription, tree: &KinematicTree) -> Self {
         let movable = (0..).zip(&robot.joints).filter(|(_, joint)| joint.kind != JointKind::Fixed);
         let entries = movable.filter_map(|(index, joint)| Some((joint.name.clone(), entry(robot, tree, index)?)));
-        Self { entries: entries.collect(), free: tree.variables().len() }
+        let entries: BTreeMap<_, _> = entries.collect();
+        let zeros = entries.keys().map(|name| (Arc::clone(name), 0.0)).collect();
+        Self { entries, zeros, free: tree.variables().len() }
     }
 
     /// Every movable joint with its value, for the values of the tree's variables (rad or m, in the tree's order).
     /// A missing variable counts as zero.
     pub fn complete(&self, variables: &[f64]) -> BTreeMap<Arc<str>, f64> {
-        let value = |entry: &Entry| entry.value(variables.get(entry.variable).copied().unwrap_or(0.0));
-        self.entries.iter().map(|(name, entry)| (Arc::clone(name), value(entry))).collect()
+        // OPTIMIZATION: a map that is copied need not be sorted.
+        let mut joints = self.zeros.clone();
+        for (value, entry) in joints.values_mut().zip(self.entries.values()) {
+            *value = entry.value(variables.get(entry.variable).copied().unwrap_or(0.0));
+        }
+        joints
     }
 
     /// The values of the tree's variables from a list of all joints.
@@ -51,11 +59,12 @@ impl JointTable {
         // Both are in the order of their names, so that what is unknown or missing shows where they part.
         let mut listed = joints.iter().peekable();
         for (name, entry) in &self.entries {
-            let (found, value) = match listed.next_if(|(found, _)| *found <= name) {
+            // OPTIMIZATION: mostly the names are those of the same description, and need not be read.
+            let (found, value) = match listed.next_if(|(found, _)| Arc::ptr_eq(found, name) || *found <= name) {
                 Some((found, value)) => (found, *value),
                 None => return Err(JointFlaw::Missing { name: name.to_string() }),
             };
-            if found != name {
+            if !Arc::ptr_eq(found, name) && found != name {
                 return Err(JointFlaw::Unknown { name: found.to_string() });
             }
             if !value.is_finite() {

@@ -28,7 +28,7 @@ impl State {
     /// The state that a waypoint describes, or what is wrong with it.
     pub(super) fn read(waypoint: &Waypoint, robot: &Robot, world: &World<'_>) -> Result<Self, String> {
         for (name, value) in ["x", "y", "yaw"].into_iter().zip(waypoint.base) {
-            in_range(&format!("the base's {name}"), value)?;
+            in_range(value, || format!("the base's {name}"))?;
         }
         let joints = robot.table.variables(&waypoint.joints).map_err(|flaw| flaw.to_string())?;
         if let Some(name) = waypoint.objects.keys().find(|name| world.object(name).is_none()) {
@@ -44,17 +44,17 @@ impl State {
     }
 }
 
-fn in_range(what: &str, value: f64) -> Result<(), String> {
+fn in_range(value: f64, what: impl FnOnce() -> String) -> Result<(), String> {
     if value.abs() <= FARTHEST {
         return Ok(());
     }
-    Err(format!("{what} is {value}, it must lie in [-{FARTHEST}, {FARTHEST}]"))
+    Err(format!("{} is {value}, it must lie in [-{FARTHEST}, {FARTHEST}]", what()))
 }
 
 /// The pose, if its numbers are fit.
 pub(super) fn sound(name: &str, pose: Pose) -> Result<Isometry3<f64>, String> {
     for value in pose.position {
-        in_range(&format!("a coordinate of `{name}`"), value)?;
+        in_range(value, || format!("a coordinate of `{name}`"))?;
     }
     let norm = pose.quaternion.iter().map(|q| q * q).sum::<f64>().sqrt();
     if (norm - 1.0).abs() <= UNIT {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::approach::{Movers, Speeds};
-use super::robot::Robot;
+use super::robot::{LinkSolid, Robot};
 use super::schedule::{AHEAD_PARTS, Class, Due, Pairs, ROUNDING_M, smaller};
 use super::solid::{Placed, Solid, exact, gap_across, lower_bound};
 use super::world::World;
@@ -91,14 +91,14 @@ pub(super) struct Stage {
     /// By solid.
     movers: Vec<Movers>,
     classes: Vec<Class>,
-    /// By solid of the robot: its link, and its place there.
-    mounts: Vec<(usize, Isometry3<f64>)>,
+    /// By solid of the robot: its link, its place there, and the centre of its ball there.
+    mounts: Vec<(usize, Isometry3<f64>, Point3<f64>)>,
     world_from_robot: Isometry3<f64>,
     /// By link.
     robot_from_link: Vec<Isometry3<f64>>,
-    /// How often everything was placed anew, and by solid of the robot when `poses` last took note.
+    /// How often everything was placed anew, and by solid of the robot when `centres` and `poses` last took note.
     moment: u64,
-    noted: Vec<u64>,
+    noted: Vec<[u64; 2]>,
     links: usize,
     objects: usize,
     lift_m: f64,
@@ -137,11 +137,11 @@ impl Stage {
         Self {
             movers: vec![Movers::NONE; solids.len()],
             classes: Vec::new(),
-            mounts: robot.solids.iter().map(|s| (s.link, s.link_from_solid)).collect(),
+            mounts: robot.solids.iter().map(mount).collect(),
             world_from_robot: Isometry3::identity(),
             robot_from_link: vec![Isometry3::identity(); robot.tree.link_count()],
             moment: 0,
-            noted: vec![0; links],
+            noted: vec![[0; 2]; links],
             centres: solids.iter().zip(&poses).map(|(solid, pose)| solid.world_centre(pose)).collect(),
             solids,
             poses,
@@ -233,17 +233,30 @@ impl Stage {
         self.poses[solid] = world_from_solid;
     }
 
+    /// World centre of the ball around a solid.
+    #[inline]
+    fn centre(&mut self, solid: usize) -> Point3<f64> {
+        // OPTIMIZATION: of most solids nobody asks at most states, and of most others only for this.
+        if let Some([noted, _]) = self.noted.get_mut(solid)
+            && *noted != self.moment
+        {
+            *noted = self.moment;
+            let (link, _, centre) = &self.mounts[solid];
+            self.centres[solid] = self.world_from_robot * (self.robot_from_link[*link] * centre);
+        }
+        self.centres[solid]
+    }
+
     /// Takes note of where a solid of the robot is now.
     fn note(&mut self, solid: usize) {
-        // OPTIMIZATION: of most solids nobody asks at most states.
-        if self.noted.get(solid).is_some_and(|noted| *noted != self.moment) {
-            self.noted[solid] = self.moment;
+        if self.noted.get(solid).is_some_and(|[_, noted]| *noted != self.moment) {
+            self.noted[solid] = [self.moment; 2];
             self.put(solid, self.world_from_link_solid(solid));
         }
     }
 
     fn world_from_link_solid(&self, solid: usize) -> Isometry3<f64> {
-        let (link, link_from_solid) = &self.mounts[solid];
+        let (link, link_from_solid, _) = &self.mounts[solid];
         self.world_from_robot * (self.robot_from_link[*link] * link_from_solid)
     }
 
@@ -324,7 +337,18 @@ impl Stage {
     /// Looks at one pair: a lower bound of its distance that is above 0 and, if it may be the smallest so far, exact.
     fn look(&mut self, index: usize, enough_m: f64, step: u32, time: f64) -> Result<f64, Hit> {
         let nearest = self.nearest_m();
-        let Pair { a, b, .. } = self.pairs[index];
+        let Pair { a, b, rule, .. } = self.pairs[index];
+        let is_counted = |bound: f64| rule == Rule::Apart && bound < nearest;
+        let is_clear = |bound: f64, enough_m: f64| bound > 0.0 && !is_counted(bound) && bound >= enough_m;
+        // OPTIMIZATION: the balls mostly suffice. That around a half space is infinite.
+        let [mut centre_a, centre_b] = [a, b].map(|solid| self.centre(solid));
+        if rule == Rule::Standing {
+            centre_a.z += self.lift_m;
+        }
+        let balls = (centre_a - centre_b).norm() - self.solids[a].radius - self.solids[b].radius;
+        if is_clear(balls, enough_m) {
+            return Ok(balls);
+        }
         for solid in [a, b] {
             self.note(solid);
         }
@@ -332,14 +356,12 @@ impl Stage {
         let (solid_a, solid_b) = (&self.solids[a], &self.solids[b]);
         let mut lifted = self.poses[a];
         let mut placed_a = Placed { solid: solid_a, world_from_solid: &self.poses[a], centre: self.centres[a] };
-        if pair.rule == Rule::Standing {
+        if rule == Rule::Standing {
             lifted.translation.z += self.lift_m;
             placed_a.world_from_solid = &lifted;
             placed_a.centre.z += self.lift_m;
         }
         let placed_b = Placed { solid: solid_b, world_from_solid: &self.poses[b], centre: self.centres[b] };
-        let is_counted = |bound: f64| pair.rule == Rule::Apart && bound < nearest;
-        let is_clear = |bound: f64, enough_m: f64| bound > 0.0 && !is_counted(bound) && bound >= enough_m;
         let mut bound = lower_bound(&placed_a, &placed_b);
         if is_clear(bound, enough_m) {
             return Ok(bound);
@@ -378,4 +400,9 @@ impl Stage {
     pub(super) fn link_solid(&self, index: usize) -> (&Solid, Isometry3<f64>) {
         (&self.solids[index], self.world_from_link_solid(index))
     }
+}
+
+/// Where a solid of the robot sits: its link, its pose there, and the centre of its ball there.
+fn mount(solid: &LinkSolid) -> (usize, Isometry3<f64>, Point3<f64>) {
+    (solid.link, solid.link_from_solid, solid.solid.world_centre(&solid.link_from_solid))
 }
