@@ -47,6 +47,12 @@ pub trait Domain: Sized + Send + Sync + 'static {
         None
     }
 
+    /// May a motion that was made for a state in mode `next` begin in one that differs from it only in its mode, which is
+    /// `mode`? Always if they are equal; also if the motion itself makes up the difference, as a hand that opens.
+    fn may_go_on(&self, mode: &Self::Mode, next: &Self::Mode) -> bool {
+        mode == next
+    }
+
     /// Metres the robot's working point must travel from `robot` until it can act on `object` at `at`,
     /// obstacles ignored. Used by the tour distances of paper section 4.3.
     fn reach(&self, robot: &RobotConfig<Self>, object: ObjectId, at: &ObjectConfig<Self>) -> f64;

@@ -245,6 +245,11 @@ impl<M: Manipulator> Domain for Tabletop<M> {
         })
     }
 
+    fn may_go_on(&self, mode: &Mode, next: &Mode) -> bool {
+        // An empty hand may open or close wherever it stands.
+        mode == next || mode.opened_to(next.gap_m()).is_some_and(|mode| mode == *next)
+    }
+
     fn reach(&self, robot: &Configuration<M::Joints>, _: ObjectId, at: &Isometry3<f64>) -> f64 {
         REACH_WEIGHT * (self.tool_point(robot) - at.translation.vector).norm()
     }

@@ -90,8 +90,10 @@ impl Pushing<'_> {
     /// Where the object is when `share` of the push is done.
     fn pose_at(&self, share: f64) -> Isometry3<f64> {
         let mut pose = *self.pose;
-        pose.translation.x += self.end.direction.x * self.end.length * share;
-        pose.translation.y += self.end.direction.y * self.end.length * share;
+        let flat = pose.translation.vector.xy();
+        // The whole push ends exactly where it should: who pushes there again comes to the same state.
+        let at = if share >= 1.0 { self.end.center.coords } else { flat.lerp(&self.end.center.coords, share) };
+        (pose.translation.x, pose.translation.y) = (at.x, at.y);
         pose
     }
 }
