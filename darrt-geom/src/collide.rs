@@ -194,6 +194,10 @@ impl CollisionModel {
     /// Writes the pose of a body and of what hangs on it.
     fn place(&self, poses: &mut Poses, body: BodyIndex, world_from_body: &Isometry3<f64>) {
         let Some(registered) = self.bodies.get(body.get()) else { return };
+        // OPTIMIZATION: of one question to the next most bodies stand still.
+        if poses.world_from_body.get(body.get()) == Some(world_from_body) && !poses.unsound.contains(body) {
+            return;
+        }
         if !narrow::is_sound(world_from_body) {
             poses.unsound.insert(body);
             return;

@@ -174,10 +174,25 @@ impl Surroundings {
 
     /// [`Surroundings::check`] without reasons, which takes less time where it is asked often.
     pub fn is_state_clear<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, contacts: &Contacts) -> bool {
+        self.is_clear_of_all(robot, state, contacts, &BodySet::ALL)
+    }
+
+    /// [`Surroundings::is_state_clear`] where [`Surroundings::is_base_clear`] is known.
+    pub fn is_rest_clear<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, contacts: &Contacts) -> bool {
+        self.is_clear_of_all(robot, state, contacts, &BodySet::ALL.difference(&self.base_links))
+    }
+
+    fn is_clear_of_all<M: Manipulator>(
+        &self,
+        robot: &M,
+        state: &TabletopState<M>,
+        contacts: &Contacts,
+        bodies: &BodySet,
+    ) -> bool {
         self.with_worker(|worker| {
             self.allow(state, contacts, &mut worker.allowed);
             self.pose_all(robot, state, worker);
-            self.is_clear(worker, &BodySet::ALL, &BodySet::ALL)
+            self.is_clear(worker, bodies, &BodySet::ALL)
         })
     }
 

@@ -149,22 +149,26 @@ impl<'a, M: Manipulator> Probe<'a, M> {
 
     /// Is nothing in the way with the robot at `q`, what it holds in its hand?
     pub fn is_clear(&mut self, q: &Configuration<M::Joints>, contacts: &Contacts) -> bool {
-        let robot = self.m.manipulator();
+        self.put(q);
+        self.m.surroundings().is_state_clear(self.m.manipulator(), &self.state, contacts)
+    }
+
+    fn put(&mut self, q: &Configuration<M::Joints>) {
         self.state.robot = *q;
         if let Some(held) = self.state.mode.held().copied()
             && let Some(pose) = self.state.objects.get_mut(held.object.index())
         {
-            *pose = robot.world_from_tool(q) * held.tool_from_object;
+            *pose = self.m.manipulator().world_from_tool(q) * held.tool_from_object;
         }
-        self.m.surroundings().is_state_clear(robot, &self.state, contacts)
     }
 
-    /// [`Probe::is_clear`] as a reason to refuse a stance.
+    /// [`Probe::is_clear`] as a reason to refuse a stance, whose base [`stance`] has found clear.
     ///
     /// # Errors
     /// [`Refused::Blocked`] with the state asked about.
     pub fn check(&mut self, q: &Configuration<M::Joints>, contacts: &Contacts) -> Result<(), Refused<M>> {
-        if self.is_clear(q, contacts) {
+        self.put(q);
+        if self.m.surroundings().is_rest_clear(self.m.manipulator(), &self.state, contacts) {
             return Ok(());
         }
         Err(Refused::Blocked(Box::new(Blocked { state: self.state.clone(), contacts: *contacts })))
