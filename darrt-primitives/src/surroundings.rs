@@ -20,8 +20,10 @@ use crate::manipulator::{LinkGroup, Manipulator};
 use crate::mode::{Contacts, TouchReason};
 use crate::tabletop::{Movable, Support, TabletopState};
 
+mod known;
 mod room;
 
+use known::Known;
 pub use room::Hand;
 
 /// How strict the check is; metres.
@@ -72,6 +74,7 @@ pub(crate) struct Worker {
     pub(crate) reach: Vec<f64>,
     /// By link: metres that it travels on one leg of a motion.
     pub(crate) link_travel: Vec<f64>,
+    known: Known,
 }
 
 impl Surroundings {
@@ -174,26 +177,40 @@ impl Surroundings {
 
     /// [`Surroundings::check`] without reasons, which takes less time where it is asked often.
     pub fn is_state_clear<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, contacts: &Contacts) -> bool {
-        self.is_clear_of_all(robot, state, contacts, &BodySet::ALL)
+        self.with_worker(|worker| {
+            self.allow(state, contacts, &mut worker.allowed);
+            self.find_poses(robot, state, worker);
+            self.is_all_clear(worker, self.strictness.clearance_m)
+        })
     }
 
     /// [`Surroundings::is_state_clear`] where [`Surroundings::is_base_clear`] is known.
     pub fn is_rest_clear<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, contacts: &Contacts) -> bool {
-        self.is_clear_of_all(robot, state, contacts, &BodySet::ALL.difference(&self.base_links))
-    }
-
-    fn is_clear_of_all<M: Manipulator>(
-        &self,
-        robot: &M,
-        state: &TabletopState<M>,
-        contacts: &Contacts,
-        bodies: &BodySet,
-    ) -> bool {
+        let clearance_m = self.strictness.clearance_m;
         self.with_worker(|worker| {
             self.allow(state, contacts, &mut worker.allowed);
             self.pose_all(robot, state, worker);
-            self.is_clear(worker, bodies, &BodySet::ALL)
+            let rest = BodySet::ALL.difference(&self.base_links);
+            let is_clear = self.is_clear(worker, &rest, &BodySet::ALL);
+            let Worker { known, poses, allowed, .. } = worker;
+            if is_clear && known.base == Some((state.robot.base, clearance_m)) {
+                known.note(poses, allowed, clearance_m);
+            }
+            is_clear
         })
+    }
+
+    /// Is nothing too near to anything else with the bodies at `worker.poses`?
+    fn is_all_clear(&self, worker: &mut Worker, clearance_m: f64) -> bool {
+        if worker.known.is_clear(&worker.poses, &worker.allowed, clearance_m) {
+            return true;
+        }
+        self.model.set_poses(&mut worker.scratch, &worker.poses);
+        let is_clear = self.is_clear_at(worker, &BodySet::ALL, &BodySet::ALL, clearance_m);
+        if is_clear {
+            worker.known.note(&worker.poses, &worker.allowed, clearance_m);
+        }
+        is_clear
     }
 
     /// [`Surroundings::check`] with the clearance that a motion keeps between the states looked at.
@@ -218,20 +235,20 @@ impl Surroundings {
     ) -> Result<(), Blame> {
         let hit = self.with_worker(|worker| {
             self.allow(state, contacts, &mut worker.allowed);
-            self.pose_all(robot, state, worker);
+            self.find_poses(robot, state, worker);
             self.first_hit_at(worker, clearance_m)
         });
         hit.map_or(Ok(()), |hit| Err(self.blame(&hit)))
     }
 
-    /// The first pair found that is too near, of all bodies.
+    /// The first pair found that is too near, of all bodies; they stand at `worker.poses`.
     pub(crate) fn first_hit(&self, worker: &mut Worker) -> Option<Hit> {
         self.first_hit_at(worker, self.strictness.clearance_m)
     }
 
     fn first_hit_at(&self, worker: &mut Worker, clearance_m: f64) -> Option<Hit> {
         // OPTIMIZATION: mostly there is none, and to find that out takes less time without a reason.
-        if self.is_clear_at(worker, &BodySet::ALL, &BodySet::ALL, clearance_m) {
+        if self.is_all_clear(worker, clearance_m) {
             return None;
         }
         self.lower_bound_at(worker, &BodySet::ALL, &BodySet::ALL, 0.0, clearance_m).err()
@@ -259,15 +276,21 @@ impl Surroundings {
             poses,
             allowed: AllowedContacts::none(),
             link_travel: vec![0.0; self.links.len()],
+            known: Known::default(),
         }
     }
 
     /// Puts every body where it is in `state`.
     pub(crate) fn pose_all<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, worker: &mut Worker) {
+        self.find_poses(robot, state, worker);
+        self.model.set_poses(&mut worker.scratch, &worker.poses);
+    }
+
+    /// Finds out where every body is in `state`.
+    fn find_poses<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, worker: &mut Worker) {
         let (link_poses, object_poses) = worker.poses.split_at_mut(self.links.len());
         robot.link_poses(&state.robot, state.mode.gap_m(), link_poses);
         object_poses.iter_mut().zip(&state.objects).for_each(|(slot, pose)| *slot = *pose);
-        self.model.set_poses(&mut worker.scratch, &worker.poses);
     }
 
     /// The bodies that stand elsewhere in `state` than in `before`, or may do so.

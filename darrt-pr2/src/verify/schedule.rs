@@ -19,7 +19,7 @@ const HORIZON_M: f64 = 0.02;
 /// What is known of a pair.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Due {
-    /// Distance of the pair when last measured, plus what [`Class::travelled_m`] was then.
+    /// Distance of the pair when last measured, plus what [`Going::travelled_m`] was then.
     pub(super) reserve_m: f64,
     pub(super) pair: usize,
 }
@@ -32,20 +32,20 @@ pub(super) struct Class {
     pub(super) apart: Pairs,
     /// The pairs of which one stands on the other.
     pub(super) standing: Pairs,
-    /// Bound on how far the two of a pair have moved towards each other since the rules were set, metres.
+    pub(super) going: Going,
+    /// No pair need be looked at before they have moved so far, metres.
+    pub(super) due_m: f64,
+}
+
+/// How the two of a pair of a class move towards each other.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Going {
+    /// Bound on how far they have moved since the rules were set, metres.
     pub(super) travelled_m: f64,
     /// The same in one part of this segment.
     pub(super) part_m: f64,
     /// How far before it must be a pair is looked at, metres.
     pub(super) ahead_m: f64,
-    /// No pair need be looked at before they have moved so far.
-    pub(super) due_m: f64,
-}
-
-impl Class {
-    pub(super) fn pairs_mut(&mut self, is_standing: bool) -> &mut Pairs {
-        if is_standing { &mut self.standing } else { &mut self.apart }
-    }
 }
 
 /// Pairs of one class that are treated alike.
@@ -63,7 +63,8 @@ pub(super) struct Pairs {
 
 impl Pairs {
     pub(super) fn new(dues: Vec<Due>) -> Self {
-        Self { near: dues.len(), least_m: [f64::NEG_INFINITY; 2], sorted_until_m: f64::NEG_INFINITY, dues }
+        let least_m = if dues.is_empty() { f64::INFINITY } else { f64::NEG_INFINITY };
+        Self { near: dues.len(), least_m: [least_m; 2], sorted_until_m: f64::NEG_INFINITY, dues }
     }
 
     /// Tells near from far: those are far whose reserve exceeds `due_m` by more than the horizon.

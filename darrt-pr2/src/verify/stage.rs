@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::approach::{Movers, Speeds};
 use super::robot::{LinkSolid, Robot};
-use super::schedule::{AHEAD_PARTS, Class, Due, Pairs, ROUNDING_M, smaller};
+use super::schedule::{AHEAD_PARTS, Class, Due, Going, Pairs, ROUNDING_M, smaller};
 use super::solid::{Placed, Solid, exact, gap_across, lower_bound};
 use super::world::World;
 
@@ -107,6 +107,8 @@ pub(super) struct Stage {
     /// Questions to the oracle.
     pub(super) exact_tests: u64,
     pub(super) smallest: Option<SmallestClearance>,
+    /// Its distance, metres.
+    nearest_m: f64,
 }
 
 impl Stage {
@@ -152,6 +154,7 @@ impl Stage {
             states: 0,
             exact_tests: 0,
             smallest: None,
+            nearest_m: f64::INFINITY,
         }
     }
 
@@ -173,7 +176,7 @@ impl Stage {
         let mut known = vec![(Movers::NONE, f64::NEG_INFINITY); self.pairs.len()];
         for class in std::mem::take(&mut self.classes) {
             for due in class.apart.dues.iter().chain(&class.standing.dues) {
-                known[due.pair] = (class.between, due.reserve_m - class.travelled_m);
+                known[due.pair] = (class.between, due.reserve_m - class.going.travelled_m);
             }
         }
         let mut dues: BTreeMap<Movers, [Vec<Due>; 2]> = BTreeMap::new();
@@ -202,8 +205,9 @@ impl Stage {
     /// nothing need be looked at are left out ([`Stage::idle_parts`]).
     pub(super) fn set_speeds(&mut self, speeds: &Speeds, parts: usize, skips: bool) {
         for class in &mut self.classes {
-            class.part_m = speeds.of(class.between) / parts.max(1) as f64;
-            class.ahead_m = if skips { AHEAD_PARTS * class.part_m } else { 0.0 };
+            let part_m = speeds.of(class.between) / parts.max(1) as f64;
+            class.going.part_m = part_m;
+            class.going.ahead_m = if skips { AHEAD_PARTS * part_m } else { 0.0 };
             class.due_m = f64::NEG_INFINITY;
         }
     }
@@ -218,7 +222,7 @@ impl Stage {
         parts: usize,
     ) {
         for class in &mut self.classes {
-            class.travelled_m += class.part_m * parts as f64;
+            class.going.travelled_m += class.going.part_m * parts as f64;
         }
         self.moment += 1;
         self.world_from_robot = *world_from_robot;
@@ -271,72 +275,67 @@ impl Stage {
 
     fn check_class(&mut self, class: &mut Class, step: u32, time: f64) -> Result<(), Hit> {
         // OPTIMIZATION: mostly none is due.
-        if class.travelled_m < class.due_m {
+        if class.going.travelled_m < class.due_m {
             return Ok(());
         }
-        class.due_m = f64::INFINITY;
-        for is_standing in [true, false] {
-            let mut pairs = std::mem::take(class.pairs_mut(is_standing));
-            let result = self.check_pairs(class, &mut pairs, is_standing, step, time);
-            *class.pairs_mut(is_standing) = pairs;
-            result?;
+        let Class { apart, standing, going, due_m, .. } = class;
+        *due_m = f64::INFINITY;
+        for (pairs, is_standing) in [(standing, true), (apart, false)] {
+            if !pairs.dues.is_empty() {
+                *due_m = due_m.min(self.check_pairs(*going, pairs, is_standing, step, time)?);
+            }
         }
         Ok(())
     }
 
-    /// Looks at those of the class's `pairs` that are due, and finds out when the next one is.
+    /// Looks at those of the `pairs` of a class that are due, and finds out when the next one is: when the class has moved so
+    /// far, metres.
     fn check_pairs(
         &mut self,
-        class: &mut Class,
+        going: Going,
         pairs: &mut Pairs,
         is_standing: bool,
         step: u32,
         time: f64,
-    ) -> Result<(), Hit> {
-        let of_interest_m = |stage: &Self| if is_standing { 0.0 } else { SOUGHT * stage.nearest_m() };
+    ) -> Result<f64, Hit> {
+        let Going { travelled_m, part_m, ahead_m } = going;
+        let of_interest_m = |stage: &Self| if is_standing { 0.0 } else { SOUGHT * stage.nearest_m };
         // A pair is due when its reserve is no more than this.
-        let due_m = |enough_m: f64| class.travelled_m + enough_m + class.ahead_m + ROUNDING_M;
+        let due_m = |enough_m: f64| travelled_m + enough_m + ahead_m + ROUNDING_M;
         let first_due_m = due_m(of_interest_m(self));
-        if class.travelled_m >= pairs.sorted_until_m || first_due_m >= pairs.least_m[1] {
-            pairs.sort(class.travelled_m, first_due_m);
+        if travelled_m >= pairs.sorted_until_m || first_due_m >= pairs.least_m[1] {
+            pairs.sort(travelled_m, first_due_m);
         }
         let mut least_m = f64::INFINITY;
         for due in &mut pairs.dues[..pairs.near] {
             let enough_m = of_interest_m(self);
             // Not one that was looked at before, if neither has moved to the other since.
-            if due.reserve_m <= due_m(enough_m) && (class.part_m > 0.0 || due.reserve_m == f64::NEG_INFINITY) {
-                let sought_m = enough_m + AHEAD_PARTS * class.part_m;
-                due.reserve_m = class.travelled_m + self.look(due.pair, sought_m, step, time)?;
+            if due.reserve_m <= due_m(enough_m) && (part_m > 0.0 || due.reserve_m == f64::NEG_INFINITY) {
+                let sought_m = enough_m + AHEAD_PARTS * part_m;
+                due.reserve_m = travelled_m + self.look(due.pair, sought_m, step, time)?;
             }
             least_m = smaller(least_m, due.reserve_m);
         }
         pairs.least_m[0] = least_m;
-        if class.part_m > 0.0 {
-            let spare_m = pairs.least_m() - due_m(of_interest_m(self));
-            class.due_m = class.due_m.min(class.travelled_m + spare_m);
+        if part_m <= 0.0 {
+            return Ok(f64::INFINITY);
         }
-        Ok(())
-    }
-
-    /// The smallest distance seen so far, metres.
-    fn nearest_m(&self) -> f64 {
-        self.smallest.as_ref().map_or(f64::INFINITY, |s| s.distance_m)
+        Ok(travelled_m + (pairs.least_m() - due_m(of_interest_m(self))))
     }
 
     /// How many parts of this segment may pass before [`Stage::check`] would look at any pair again.
     pub(super) fn idle_parts(&self) -> f64 {
-        let nearest_m = self.nearest_m();
-        let moving = self.classes.iter().filter(|class| class.part_m > 0.0);
+        let moving = self.classes.iter().filter(|class| class.going.part_m > 0.0);
         let parts = moving.map(|class| {
-            let apart_m = class.apart.least_m() - SOUGHT * nearest_m;
-            (apart_m.min(class.standing.least_m()) - class.travelled_m - ROUNDING_M) / class.part_m
+            let apart_m = class.apart.least_m() - SOUGHT * self.nearest_m;
+            (apart_m.min(class.standing.least_m()) - class.going.travelled_m - ROUNDING_M) / class.going.part_m
         });
         parts.fold(f64::INFINITY, f64::min).max(0.0)
     }
 
     /// Looks at one pair: a lower bound of its distance that is above 0 and, if it may be the smallest so far, exact.
     fn look(&mut self, index: usize, enough_m: f64, step: u32, time: f64) -> Result<f64, Hit> {
-        let nearest = self.nearest_m();
+        let nearest = self.nearest_m;
         let Pair { a, b, rule, .. } = self.pairs[index];
         let is_counted = |bound: f64| rule == Rule::Apart && bound < nearest;
         let is_clear = |bound: f64, enough_m: f64| bound > 0.0 && !is_counted(bound) && bound >= enough_m;
@@ -384,6 +383,7 @@ impl Stage {
             return Err(Hit { names: names(), place: answer.place });
         }
         if is_counted(bound) && answer.distance < nearest {
+            self.nearest_m = answer.distance;
             self.smallest = Some(SmallestClearance { distance_m: answer.distance, bodies: names(), step, time });
         }
         let pair = &mut self.pairs[index];

@@ -56,8 +56,6 @@ pub fn push<M: Manipulator>(
     let surface = from.mode.support_of(object).and_then(|s| m.surface(s)).ok_or(Infeasible::OffSupport)?;
     let pose = from.object(object).ok_or(Infeasible::NoContact)?;
 
-    let mut chain = Chain::at(from);
-    retreat(m, &mut chain)?;
     let mut end = end_of_push(m, surface, pose, target, rng)?;
     shorten_to_free(m, from, object, &mut end)?;
     let hand = m.manipulator().hand();
@@ -74,6 +72,8 @@ pub fn push<M: Manipulator>(
     let mut probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
     let push = Pushing { object, pose, at_contact: &at_contact, end: &end };
     probe.check_hand(&at_contact, &contacts(object)).map_err(Infeasible::Blocked)?;
+    let mut chain = Chain::at(from);
+    retreat(m, &mut chain)?;
     let way = stance(m, from, &wanted, rng, |q| way_of(m, q, &push, &mut probe))?;
     assemble(m, chain, &push, &way, rng)
 }
