@@ -65,9 +65,8 @@ pub(super) fn mend<D: Domain>(
             continue;
         }
         forks.push(Fork { kept: steps.len(), here: here.clone(), done, tried: 0 });
-        let judge = &mut |here: &State<D>, _, steps: Vec<Step<D>>, rng: &mut dyn Rng| {
-            settle(extender, here, steps, rng).ok()
-        };
+        let judge =
+            &mut |here: &State<D>, _, steps: Vec<Step<D>>, rng: &mut dyn Rng| settle(extender, here, steps, rng).ok();
         loop {
             if left == 0 || extender.interrupt.stop().is_some() {
                 return None;

@@ -38,6 +38,7 @@ pub(super) struct Class {
 }
 
 /// How the two of a pair of a class move towards each other.
+#[expect(clippy::struct_field_names, reason = "all are metres")]
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Going {
     /// Bound on how far they have moved since the rules were set, metres.

@@ -9,6 +9,7 @@ use darrt_core::state::ObjectId;
 use darrt_core::validity::Blame;
 use nalgebra::Isometry3;
 use rand::{Rng, RngExt};
+use smallvec::SmallVec;
 
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Mode};
@@ -17,6 +18,9 @@ use crate::tabletop::{Tabletop, TabletopState};
 
 /// How many arm configurations are drawn for one base.
 const ARM_TRIES: usize = 4;
+
+/// Of so many bases drawn the nearest is tried first. With all of them at once the robot would hardly ever go round a table.
+const NEAREST_OF: usize = 4;
 
 /// What is asked of a stance.
 #[derive(Debug, Clone, Copy)]
@@ -52,8 +56,8 @@ impl<M: Manipulator> Blocked<M> {
     }
 }
 
-/// Tries bases for the wanted hand pose: sometimes the present one first, then random ones, each with a few arm
-/// configurations. `accept` makes something of a stance, or refuses it and the next is tried.
+/// Tries bases for the wanted hand pose: sometimes the present one first, then random ones, the nearer ones of each few first,
+/// each with a few arm configurations. `accept` makes something of a stance, or refuses it and the next is tried.
 ///
 /// # Errors
 /// [`Infeasible::Blocked`] with what was in the way of the last stance that the arm reached, [`Infeasible::Unreachable`]
@@ -69,11 +73,25 @@ pub fn stance<M: Manipulator, T>(
     let Wanted { world_from_tool, tries } = *wanted;
     let [empty, loaded] = m.settings().drives;
     let drives = if from.mode.held().is_some() { loaded } else { empty };
-    let stays = !drives || rng.random_bool(0.5);
+    let here = from.robot.base;
+    let space = m.robot().base();
+    let mut left = tries;
+    // The last one is tried first.
+    let mut bases: SmallVec<[[f64; 3]; NEAREST_OF]> = SmallVec::new();
+    if !drives || rng.random_bool(0.5) {
+        let stays = if drives { tries.min(1) } else { tries };
+        bases.resize(stays, here);
+        left -= stays;
+    }
     let mut blocked = None;
-    for attempt in 0..tries {
-        let base =
-            if !drives || (stays && attempt == 0) { from.robot.base } else { robot.base_for(world_from_tool, rng) };
+    loop {
+        if bases.is_empty() {
+            let few = left.min(NEAREST_OF);
+            bases.extend((0..few).map(|_| robot.base_for(world_from_tool, rng)));
+            bases.sort_by(|a, b| space.distance(&here, b).total_cmp(&space.distance(&here, a)));
+            left -= few;
+        }
+        let Some(base) = bases.pop() else { break };
         let parked = Configuration { base, arm: from.robot.arm };
         if !m.robot().base().contains(&base)
             || !robot.may_reach(&base, world_from_tool)

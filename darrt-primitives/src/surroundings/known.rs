@@ -28,9 +28,9 @@ pub(super) struct Known {
 impl Known {
     /// Is it known that with these poses nothing but what is allowed is nearer than the clearance?
     pub(super) fn is_clear(&self, poses: &[Isometry3<f64>], allowed: &AllowedContacts, clearance_m: f64) -> bool {
-        self.states.iter().any(|state| {
-            state.clearance_m >= clearance_m && state.poses == *poses && state.allowed == *allowed
-        })
+        self.states
+            .iter()
+            .any(|state| state.clearance_m >= clearance_m && state.poses == *poses && state.allowed == *allowed)
     }
 
     /// Takes note of a state that is clear.
