@@ -13,7 +13,8 @@ use crate::state::{ComponentId, ObjectConfig, ObjectId, RobotConfig};
 ///
 /// # Laws
 /// `reach` and `hop` are finite and non-negative. Two points of an object lie no farther apart than its two
-/// configurations, and `reach_at_least` of the gap between working point and object is at most `reach`.
+/// configurations, and `reach_at_least` of the gap between working point and object is at most `reach`. A motion `may_go_on`
+/// in the mode that it was made for.
 ///
 /// # Example
 /// See `testing::puck` (feature `testing`), a disc that pushes and carries pucks.

@@ -20,11 +20,13 @@ pub const REACH_AT_LEAST: &str =
     "domain.reach-at-least: reach_at_least of the gap between working point and object is at most reach, and grows";
 /// Hop is a measure.
 pub const HOP: &str = "domain.hop: hop is finite and not negative";
+/// What goes on from where it was made for.
+pub const MAY_GO_ON: &str = "domain.may-go-on: a motion may begin in the mode that it was made for";
 /// Names tell the components apart.
 pub const NAMES: &str = "domain.names: every component has a name of its own";
 
 /// The laws of this file.
-pub const LAWS: &[&str] = &[COUNT, REACH, REACH_FROM, POINT, REACH_AT_LEAST, HOP, NAMES];
+pub const LAWS: &[&str] = &[COUNT, REACH, REACH_FROM, POINT, REACH_AT_LEAST, HOP, MAY_GO_ON, NAMES];
 
 /// The laws of a domain and of all its component spaces, for three states, two parameters in `[0, 1]` and
 /// a seed.
@@ -42,6 +44,7 @@ pub fn check_domain<D: Domain>(
     let check = || {
         for state in states {
             equal(COUNT, &state.objects.len(), &m.objects().len())?;
+            equal(MAY_GO_ON, &m.may_go_on(&state.mode, &state.mode), &true)?;
         }
         let robot = check_component_space(m.robot(), claims, [&a.robot, &b.robot, &c.robot], ts, seed);
         robot.map_err(|broken| broken.of(m.component_name(ComponentId::Robot)))?;

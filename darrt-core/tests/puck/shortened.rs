@@ -1,21 +1,25 @@
 //! A plan that was found is made shorter, as long as somebody waits for it.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use darrt_core::budget::{Cancel, Interrupt, Stop};
 use darrt_core::extend::{ExtendOptions, Extender};
 use darrt_core::goal::Goal;
+use darrt_core::motion::Instance;
 use darrt_core::observe::Silent;
-use darrt_core::plan::Plan;
+use darrt_core::partial::PartialState;
+use darrt_core::plan::{Plan, Step};
 use darrt_core::problem::Problem;
 use darrt_core::search::Strategy;
 use darrt_core::shorten::{ShortenOptions, shorten};
 use darrt_core::solve::{SolveOptions, solve};
-use darrt_core::state::State;
-use darrt_core::testing::puck::{paper_strategy, problems};
+use darrt_core::state::{ComponentSet, State};
+use darrt_core::testing::puck::{Point, Setup, paper_strategy, problems};
+use darrt_core::validity::{Blame, BlockKind, FreePrefix, Validity};
 use darrt_core::verify::{Refusal, Verified, Verifier};
 
-use super::support::{World, options, rng, small};
+use super::support::{World, id, options, rng, small};
 
 fn shortening(extensions: usize) -> Strategy<World> {
     Strategy { shorten: ShortenOptions { extensions }, ..paper_strategy().unwrap() }
@@ -63,6 +67,64 @@ fn every_shorter_plan_is_right_however_early_the_effort_ends() {
     }
     assert_eq!(shorter[0], 0, "no effort, no plan");
     assert!(shorter.iter().filter(|n| **n > 0).count() >= 3, "{shorter:?}");
+}
+
+const LAST_STOP: Point = [2.0, 1.5];
+const BESIDE: Point = [1.6, 2.0];
+const GOAL: Point = [2.0, 0.6];
+
+/// The puck comes to its goal only from the last stop, and the robot only from beside it to where it pushes there.
+struct OneWay(Box<dyn Validity<World>>);
+
+impl Validity<World> for OneWay {
+    fn check(&self, m: &World, state: &State<World>, contacts: &ComponentSet) -> Result<(), Blame> {
+        self.0.check(m, state, contacts)
+    }
+
+    fn free_prefix(&self, m: &World, instance: &Instance<World>, from: &State<World>) -> FreePrefix {
+        let end = instance.at(m, 1.0, from);
+        let is_allowed = match instance.label {
+            "Push" => end.objects[0] != GOAL || from.objects[0] == LAST_STOP,
+            _ => end.mode.touching.is_none() || from.objects[0] != LAST_STOP || from.robot == BESIDE,
+        };
+        if is_allowed {
+            return self.0.free_prefix(m, instance, from);
+        }
+        let bar = Blame { kind: BlockKind::Other, first: "robot".into(), second: "bar".into(), place: [0.0; 3] };
+        FreePrefix::blocked(0.5, bar)
+    }
+}
+
+/// Three pushes, and before the last one the robot goes around the puck. The first two become one; what is behind stays,
+/// because no single extension does the same: the new push comes back to the old plan beside the puck.
+#[test]
+fn old_steps_follow_on_new_ones() {
+    let floor = Setup::new([4.0, 3.0], 0.15).robot_at([0.3, 1.5]).puck("red", 0.12, [1.0, 1.5]);
+    let mut parts = floor.puck_goal(0, GOAL).parts().unwrap();
+    parts.validity = Box::new(OneWay(parts.validity));
+    let problem = Problem::new(parts).unwrap();
+    // Every motion in one step.
+    let limits = ExtendOptions { spacing_m: 100.0, ..ExtendOptions::default() };
+    let extender = Extender { problem: &problem, options: &limits, reroute: None, interrupt: Interrupt::NEVER };
+    let anywhere = || PartialState::anywhere(problem.domain());
+    let puck_at = |at| anywhere().with_object(id(0), at);
+    let beside = anywhere().with_robot(problem.domain(), BESIDE);
+    let (mut here, mut steps) = (problem.start().clone(), Vec::new());
+    for target in [puck_at([1.5, 2.0]), puck_at(LAST_STOP), beside, puck_at(GOAL)] {
+        let extension = extender.extend(&here, &target, &mut rng(0));
+        assert!(extension.is_met, "{target:?}: {:?}", extension.blame);
+        for reached in extension.reached {
+            here = reached.state;
+            steps.push(Step { instance: reached.instance, until: reached.t, primitive: reached.primitive });
+        }
+    }
+    let plan = Plan::new(problem.start().clone(), steps);
+    assert_eq!(plan.steps().len(), 7);
+    let short = shorten(&extender, &plan, ShortenOptions { extensions: 100 }, &mut rng(0)).unwrap();
+    let is_old = |step: &Step<World>| plan.steps().iter().any(|old| Arc::ptr_eq(&old.instance, &step.instance));
+    assert_eq!(short.steps().iter().map(is_old).collect::<Vec<_>>(), [false, false, false, true, true]);
+    let verdict = problem.verifier().verify(problem.domain(), problem.start(), problem.goal(), &short);
+    assert_eq!(verdict.err(), None);
 }
 
 /// Cancels while it judges, and gives up. Counts the plans it is shown.

@@ -178,6 +178,8 @@ pub struct Bench {
     pub reach_at_least: fn(f64) -> f64,
     /// [`Domain::hop`], by the configurations of the two objects.
     pub hop: fn(&Config, &Config) -> f64,
+    /// [`Domain::may_go_on`].
+    pub may_go_on: fn(&Tag, &Tag) -> bool,
     /// [`Domain::component_name`].
     pub name: fn(ComponentId) -> String,
 }
@@ -193,6 +195,7 @@ impl Default for Bench {
             object_point: |at| at[0],
             reach_at_least: |gap_m| gap_m,
             hop: along,
+            may_go_on: |mode, next| mode == next,
             name,
         }
     }
@@ -222,6 +225,10 @@ impl Domain for Bench {
 
     fn component_name(&self, component: ComponentId) -> Cow<'_, str> {
         Cow::Owned((self.name)(component))
+    }
+
+    fn may_go_on(&self, mode: &Tag, next: &Tag) -> bool {
+        (self.may_go_on)(mode, next)
     }
 
     fn reach(&self, robot: &Config, _: ObjectId, at: &Config) -> f64 {

@@ -316,7 +316,7 @@ fn subset(robot: Sketch) -> Result<(), Broken> {
 }
 
 fn domains() -> Vec<Case> {
-    use laws::domain::{COUNT, HOP, NAMES, POINT, REACH, REACH_AT_LEAST, REACH_FROM};
+    use laws::domain::{COUNT, HOP, MAY_GO_ON, NAMES, POINT, REACH, REACH_AT_LEAST, REACH_FROM};
     let case = |name, wrong, law, broken| Case { name, wrong, law, broken, honest: || domain(&Bench::default()) };
     vec![
         case("inside the object", "reach subtracts the radius of the object, and is negative inside it", REACH, || {
@@ -340,6 +340,9 @@ fn domains() -> Vec<Case> {
         }),
         case("normalised hop", "divides by the distance of two objects at the same place", HOP, || {
             domain(&Bench { hop: |a, b| (a[0] - b[0]).powi(2) / (a[0] - b[0]).abs(), ..Bench::default() })
+        }),
+        case("only ever onwards", "asks for a later mode, and so refuses the very one", MAY_GO_ON, || {
+            domain(&Bench { may_go_on: |mode, next| mode.number() < next.number(), ..Bench::default() })
         }),
         case("all called cart", "two objects of one name: nobody can tell what blocked", NAMES, || {
             domain(&Bench { name: |_| "cart".to_owned(), ..Bench::default() })
