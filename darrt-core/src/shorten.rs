@@ -55,8 +55,10 @@ pub fn shorten<D: Domain>(
     if !extender.options.defer {
         return best;
     }
-    let best = best.as_ref().unwrap_or(plan);
-    let steps = mend(extender, &Old::new(extender.problem.domain(), best), options.extensions, rng)?;
+    // What cannot be mended may have been leapt to for nothing: the plan itself has more placements to come through.
+    let m = extender.problem.domain();
+    let mut mended = |old: &Plan<D>| mend(extender, &Old::new(m, old), options.extensions, rng);
+    let steps = best.as_ref().and_then(&mut mended).or_else(|| mended(plan))?;
     Some(Plan::new(plan.start().clone(), steps))
 }
 

@@ -10,8 +10,9 @@ use crate::plan::Step;
 use crate::settle::settle;
 use crate::state::State;
 
-/// How often it is tried to go on from one place before that place is given up.
+/// How often it is tried to go on from one place before that place is given up, and how often from the first.
 const TRIES: usize = 2;
+const FIRST_TRIES: usize = 6;
 
 /// A place from which a leap was made: there the new plan can go on otherwise.
 struct Fork<D: Domain> {
@@ -71,8 +72,8 @@ pub(super) fn mend<D: Domain>(
             if left == 0 || extender.interrupt.stop().is_some() {
                 return None;
             }
-            // A place that leads nowhere is given up, but not the first one.
-            while forks.len() > 1 && forks.last().is_some_and(|last| last.tried >= TRIES) {
+            let most = |forks: &[Fork<D>]| if forks.len() > 1 { TRIES } else { FIRST_TRIES };
+            while forks.last().is_some_and(|last| last.tried >= most(&forks)) {
                 forks.pop();
             }
             let fork = forks.last_mut()?;

@@ -69,48 +69,46 @@ fn every_shorter_plan_is_right_however_early_the_effort_ends() {
     assert!(shorter.iter().filter(|n| **n > 0).count() >= 3, "{shorter:?}");
 }
 
+const FIRST_STOP: Point = [1.5, 2.0];
 const LAST_STOP: Point = [2.0, 1.5];
 const BESIDE: Point = [1.6, 2.0];
 const GOAL: Point = [2.0, 0.6];
 
-/// The puck comes to its goal only from the last stop, and the robot only from beside it to where it pushes there.
-struct OneWay(Box<dyn Validity<World>>);
+/// The puck comes to its goal only from the last stop, and the robot only from beside it to where it pushes there. Nothing is
+/// pushed to the stop that is barred.
+struct OneWay {
+    inner: Box<dyn Validity<World>>,
+    barred: Option<Point>,
+}
 
 impl Validity<World> for OneWay {
     fn check(&self, m: &World, state: &State<World>, contacts: &ComponentSet) -> Result<(), Blame> {
-        self.0.check(m, state, contacts)
+        self.inner.check(m, state, contacts)
     }
 
     fn free_prefix(&self, m: &World, instance: &Instance<World>, from: &State<World>) -> FreePrefix {
         let end = instance.at(m, 1.0, from);
         let is_allowed = match instance.label {
+            "Push" if Some(end.objects[0]) == self.barred => false,
             "Push" => end.objects[0] != GOAL || from.objects[0] == LAST_STOP,
             _ => end.mode.touching.is_none() || from.objects[0] != LAST_STOP || from.robot == BESIDE,
         };
         if is_allowed {
-            return self.0.free_prefix(m, instance, from);
+            return self.inner.free_prefix(m, instance, from);
         }
         let bar = Blame { kind: BlockKind::Other, first: "robot".into(), second: "bar".into(), place: [0.0; 3] };
         FreePrefix::blocked(0.5, bar)
     }
 }
 
-/// Three pushes, and before the last one the robot goes around the puck. The first two become one; what is behind stays,
-/// because no single extension does the same: the new push comes back to the old plan beside the puck.
-#[test]
-fn old_steps_follow_on_new_ones() {
-    let floor = Setup::new([4.0, 3.0], 0.15).robot_at([0.3, 1.5]).puck("red", 0.12, [1.0, 1.5]);
-    let mut parts = floor.puck_goal(0, GOAL).parts().unwrap();
-    parts.validity = Box::new(OneWay(parts.validity));
-    let problem = Problem::new(parts).unwrap();
-    // Every motion in one step.
-    let limits = ExtendOptions { spacing_m: 100.0, ..ExtendOptions::default() };
-    let extender = Extender { problem: &problem, options: &limits, reroute: None, interrupt: Interrupt::NEVER };
+/// Three pushes, and before the last one the robot goes around the puck. Every motion is one step.
+fn pushed_thrice(extender: &Extender<'_, World>) -> Plan<World> {
+    let problem = extender.problem;
     let anywhere = || PartialState::anywhere(problem.domain());
     let puck_at = |at| anywhere().with_object(id(0), at);
     let beside = anywhere().with_robot(problem.domain(), BESIDE);
     let (mut here, mut steps) = (problem.start().clone(), Vec::new());
-    for target in [puck_at([1.5, 2.0]), puck_at(LAST_STOP), beside, puck_at(GOAL)] {
+    for target in [puck_at(FIRST_STOP), puck_at(LAST_STOP), beside, puck_at(GOAL)] {
         let extension = extender.extend(&here, &target, &mut rng(0));
         assert!(extension.is_met, "{target:?}: {:?}", extension.blame);
         for reached in extension.reached {
@@ -118,13 +116,29 @@ fn old_steps_follow_on_new_ones() {
             steps.push(Step { instance: reached.instance, until: reached.t, primitive: reached.primitive });
         }
     }
-    let plan = Plan::new(problem.start().clone(), steps);
-    assert_eq!(plan.steps().len(), 7);
-    let short = shorten(&extender, &plan, ShortenOptions { extensions: 100 }, &mut rng(0)).unwrap();
-    let is_old = |step: &Step<World>| plan.steps().iter().any(|old| Arc::ptr_eq(&old.instance, &step.instance));
-    assert_eq!(short.steps().iter().map(is_old).collect::<Vec<_>>(), [false, false, false, true, true]);
-    let verdict = problem.verifier().verify(problem.domain(), problem.start(), problem.goal(), &short);
-    assert_eq!(verdict.err(), None);
+    assert_eq!(steps.len(), 7);
+    Plan::new(problem.start().clone(), steps)
+}
+
+/// The first two pushes become one; what is behind stays, because no single extension does the same: the new push comes back
+/// to the old plan beside the puck. Either because that is shorter, or because the first push turns out to be blocked when
+/// the plan is judged.
+#[test]
+fn old_steps_follow_on_new_ones() {
+    for (defer, barred) in [(false, None), (true, Some(FIRST_STOP))] {
+        let floor = Setup::new([4.0, 3.0], 0.15).robot_at([0.3, 1.5]).puck("red", 0.12, [1.0, 1.5]);
+        let mut parts = floor.puck_goal(0, GOAL).parts().unwrap();
+        parts.validity = Box::new(OneWay { inner: parts.validity, barred });
+        let problem = Problem::new(parts).unwrap();
+        let limits = ExtendOptions { spacing_m: 100.0, defer, ..ExtendOptions::default() };
+        let extender = Extender { problem: &problem, options: &limits, reroute: None, interrupt: Interrupt::NEVER };
+        let plan = pushed_thrice(&extender);
+        let short = shorten(&extender, &plan, ShortenOptions { extensions: 100 }, &mut rng(0)).unwrap();
+        let is_old = |step: &Step<World>| plan.steps().iter().any(|old| Arc::ptr_eq(&old.instance, &step.instance));
+        assert_eq!(short.steps().iter().map(is_old).collect::<Vec<_>>(), [false, false, false, true, true], "{defer}");
+        let verdict = problem.verifier().verify(problem.domain(), problem.start(), problem.goal(), &short);
+        assert_eq!(verdict.err(), None);
+    }
 }
 
 /// Cancels while it judges, and gives up. Counts the plans it is shown.
