@@ -21,9 +21,6 @@ use leap::{Leap, Old, leap};
 use mend::mend;
 use rejoin::rejoin;
 
-/// The plan is as short as it gets when this many rounds found nothing.
-const FRUITLESS_ROUNDS: usize = 1;
-
 /// How much effort goes into a shorter plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ShortenOptions {
@@ -41,22 +38,19 @@ pub fn shorten<D: Domain>(
 ) -> Option<Plan<D>> {
     let mut left = options.extensions;
     let mut best: Option<Plan<D>> = None;
-    let mut fruitless = 0;
-    while left > 0 && fruitless < FRUITLESS_ROUNDS && extender.interrupt.stop().is_none() {
+    let m = extender.problem.domain();
+    while left > 0 && extender.interrupt.stop().is_none() {
         let old = best.as_ref().unwrap_or(plan);
-        let found = retrace(extender, &Old::new(extender.problem.domain(), old), &mut left, rng);
-        if found.len() < old.steps().len() {
-            best = Some(Plan::new(plan.start().clone(), found));
-            fruitless = 0;
-        } else {
-            fruitless += 1;
+        let found = retrace(extender, &Old::new(m, old), &mut left, rng);
+        if found.len() >= old.steps().len() {
+            break;
         }
+        best = Some(Plan::new(plan.start().clone(), found));
     }
     if !extender.options.defer {
         return best;
     }
     // What cannot be mended may have been leapt to for nothing: the plan itself has more placements to come through.
-    let m = extender.problem.domain();
     let mut mended = |old: &Plan<D>| mend(extender, &Old::new(m, old), options.extensions, rng);
     let steps = best.as_ref().and_then(&mut mended).or_else(|| mended(plan))?;
     Some(Plan::new(plan.start().clone(), steps))
