@@ -2,7 +2,7 @@
 //!
 //! A tree wanders: it pushes here, then there, then back. Every placement of the objects on the way of a found plan is a
 //! target that can be reached, so from each a later one is looked for that one extension reaches with fewer steps
-//! (`leap`). Between two of them the robot alone moves, so what leapt can come back to the old plan ([`rejoin`]), which goes
+//! (`leap`). Between two of them the robot alone moves, so what leapt can come back to the old plan (`rejoin`), which goes
 //! on from there. The motions of the shortest plan are then judged if the search took them as free, and one that is not is
 //! passed by other leaps (`mend`). The verifier judges the whole.
 
