@@ -88,7 +88,8 @@ impl CollisionModelBuilder {
             world_from_body: vec![Isometry3::identity(); bodies.len()],
             balls: BallBatch::new(&bodies.iter().map(|body| body.radius).collect::<Vec<_>>()),
             placed: vec![nowhere; solids.len()],
-            unsound: moving,
+            // Nothing has been placed yet.
+            unsound: indices.iter().copied().collect(),
         };
         let mut model = CollisionModel {
             bodies,
@@ -180,4 +181,29 @@ fn ball_around(solids: &[Solid]) -> (Point3<f64>, f64) {
     let centre = Point3::from((low + high) / 2.0);
     let reach = |solid: &Solid| (solid.centre - centre).norm() + solid.radius;
     (centre, solids.iter().map(reach).fold(0.0, f64::max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::allowed::AllowedContacts;
+    use crate::collide::Query;
+
+    #[test]
+    fn a_fixed_body_at_the_origin_is_in_the_way() {
+        let cube = |name: &str| Body::single(Arc::from(name), Shape::cuboid(Vector3::repeat(0.5)).unwrap()).unwrap();
+        let mut builder = CollisionModelBuilder::default();
+        builder.add_fixed(&cube("fixed"), &Isometry3::identity()).unwrap();
+        builder.add_moving(&cube("moving")).unwrap();
+        let model = builder.build();
+        let mut scratch = model.scratch();
+        let allowed = AllowedContacts::none();
+        let query =
+            Query { moved: &BodySet::ALL, against: &BodySet::ALL, allowed: &allowed, clearance: 0.01, cap: 0.0 };
+        for (x, is_clear) in [(0.9, false), (1.1, true), (0.0, false)] {
+            model.set_poses(&mut scratch, &[Isometry3::translation(x, 0.0, 0.0)]);
+            assert_eq!(model.is_clear(&mut scratch, &query), is_clear, "{x}");
+            assert_eq!(model.lower_bound(&mut scratch, &query).is_ok(), is_clear, "{x}");
+        }
+    }
 }
