@@ -21,8 +21,8 @@ struct Fork<D: Domain> {
     here: State<D>,
     /// How many placements lie behind.
     done: usize,
-    /// How often it was tried to go on.
-    tried: usize,
+    /// How often it may still be tried to go on.
+    tries_left: usize,
 }
 
 /// Judges the old plan from placement to placement. A motion that is blocked is passed by leaps that are judged, of at most
@@ -65,19 +65,19 @@ pub(super) fn mend<D: Domain>(
             next = Some(joint.step);
             continue;
         }
-        forks.push(Fork { kept: steps.len(), here: here.clone(), done, tried: 0 });
+        let tries_left = if forks.is_empty() { FIRST_TRIES } else { TRIES };
+        forks.push(Fork { kept: steps.len(), here: here.clone(), done, tries_left });
         let judge =
             &mut |here: &State<D>, _, steps: Vec<Step<D>>, rng: &mut dyn Rng| settle(extender, here, steps, rng).ok();
         loop {
             if left == 0 || extender.interrupt.stop().is_some() {
                 return None;
             }
-            let most = |forks: &[Fork<D>]| if forks.len() > 1 { TRIES } else { FIRST_TRIES };
-            while forks.last().is_some_and(|last| last.tried >= most(&forks)) {
+            while forks.last().is_some_and(|last| last.tries_left == 0) {
                 forks.pop();
             }
             let fork = forks.last_mut()?;
-            fork.tried += 1;
+            fork.tries_left -= 1;
             steps.truncate(fork.kept);
             let Some(Leap { steps: leapt, end, passed }) =
                 leap(extender, &fork.here, old.ahead(fork.done), &mut left, judge, rng)

@@ -21,8 +21,8 @@ struct Clear {
 pub(super) struct Known {
     states: Vec<Clear>,
     oldest: usize,
-    /// Where the base last stood clear of the fixed bodies, and by how much, metres.
-    pub(super) base: Option<([f64; 3], f64)>,
+    /// Where the base last stood clear of the fixed bodies.
+    pub(super) base: Option<[f64; 3]>,
 }
 
 impl Known {

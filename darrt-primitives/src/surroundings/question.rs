@@ -29,15 +29,14 @@ impl Surroundings {
 
     /// [`Surroundings::is_state_clear`] where [`Surroundings::is_base_clear`] is known.
     pub fn is_rest_clear<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, contacts: &Contacts) -> bool {
-        let clearance_m = self.strictness.clearance_m;
         self.with_worker(|worker| {
             self.allow(state, contacts, &mut worker.allowed);
             self.pose_all(robot, state, worker);
             let rest = BodySet::ALL.difference(&self.base_links);
             let is_clear = self.is_clear(worker, &rest, &BodySet::ALL);
             let Worker { known, poses, allowed, .. } = worker;
-            if is_clear && known.base == Some((state.robot.base, clearance_m)) {
-                known.note(poses, allowed, clearance_m);
+            if is_clear && known.base == Some(state.robot.base) {
+                known.note(poses, allowed, self.strictness.clearance_m);
             }
             is_clear
         })

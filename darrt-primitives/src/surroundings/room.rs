@@ -40,7 +40,9 @@ impl Surroundings {
             // What the arm does and where the objects are does not count.
             let against = BodySet::ALL.difference(self.model.moving());
             let is_clear = self.is_clear(worker, &self.base_links, &against);
-            worker.known.base = is_clear.then_some((q.base, self.strictness.clearance_m)).or(worker.known.base);
+            if is_clear {
+                worker.known.base = Some(q.base);
+            }
             is_clear
         })
     }
