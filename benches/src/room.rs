@@ -48,17 +48,30 @@ impl Room {
         Self { world, scene, validity, start }
     }
 
-    /// `count` states with robot and plate anywhere in their spaces, colliding ones among them.
+    /// The `index`-th state with robot and plate anywhere in their spaces; colliding ones are among them.
+    pub fn state(&self, index: u64) -> WorldState {
+        let rng = &mut stream(index);
+        State {
+            robot: self.world.robot().sample(rng),
+            objects: self.world.objects().iter().map(|space| space.sample(rng)).collect(),
+            mode: self.start.mode.clone(),
+        }
+    }
+
+    /// The same with what `holding` holds in the hand as there.
+    pub fn state_holding(&self, index: u64, holding: &WorldState) -> WorldState {
+        let mut state = self.state(index);
+        state.mode.clone_from(&holding.mode);
+        if let Some(held) = holding.mode.held() {
+            let world_from_tool = self.world.manipulator().world_from_tool(&state.robot);
+            state.objects[held.object.index()] = world_from_tool * held.tool_from_object;
+        }
+        state
+    }
+
+    /// The first `count` of these states.
     pub fn states(&self, count: u64) -> Vec<WorldState> {
-        let draw = |index| {
-            let rng = &mut stream(index);
-            State {
-                robot: self.world.robot().sample(rng),
-                objects: self.world.objects().iter().map(|space| space.sample(rng)).collect(),
-                mode: self.start.mode.clone(),
-            }
-        };
-        (0..count).map(draw).collect()
+        (0..count).map(|index| self.state(index)).collect()
     }
 
     /// World poses of links and objects: what the collision model calls its moving bodies.
