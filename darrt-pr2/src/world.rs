@@ -232,7 +232,7 @@ fn settings(problem: &ProblemFile, side: Side) -> Result<ActionSettings<ArmConfi
         },
         retreat_m: push.retreat_m.min(problem.place.retreat_m),
         least_line_share: 0.5,
-        line_step_m: 0.02,
+        line_step_m: 0.05,
         drives: [problem.allows(PrimitiveName::BaseTransit), problem.allows(PrimitiveName::BaseRigidTransfer)],
         base_tries: 24,
         grasp_tries: 4,

@@ -96,7 +96,7 @@ pub struct ActionSettings<J> {
     pub retreat_m: f64,
     /// Part of an approach or retreat that is enough when the arm reaches no farther, in `(0, 1]`.
     pub least_line_share: f64,
-    /// Distance between inverse-kinematics solutions along a straight line of the hand, metres.
+    /// The longest distance between inverse-kinematics solutions along a straight line of the hand, metres.
     pub line_step_m: f64,
     /// May the base drive with an empty hand, and with an object in it?
     pub drives: [bool; 2],

@@ -144,7 +144,7 @@ fn a_push_needs_room_behind_the_object_and_two_centimetres_ahead() {
     // The tool is at x = -0.645 when the fingers touch the tin, and comes down at -0.675.
     for (near, reached_mm) in [
         (near_between::<-680, 0> as Near, Some(100.0)),
-        (near_between::<-680, -618>, Some(25.0)),
+        (near_between::<-680, -618>, Some(26.0)),
         (near_between::<-680, -630>, None),
         (near_between::<-660, 0>, None),
     ] {

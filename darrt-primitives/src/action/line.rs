@@ -10,10 +10,10 @@ use crate::tabletop::Tabletop;
 /// The way of the arm along a line of the hand, as far as the arm reaches.
 #[derive(Debug, Clone)]
 pub struct Line<J> {
-    /// Arm configurations at equal steps, the start not among them.
+    /// Arm configurations on the way, the start not among them.
     pub arms: Vec<J>,
-    /// How much of the line was reached, in `[0, 1]`.
-    pub share: f64,
+    /// How much of the line is done at each of them, in `(0, 1]`, ascending.
+    pub shares: Vec<f64>,
 }
 
 /// How far the hand may be beside the line between two steps, where the arm goes straight in joint space; metres. A
@@ -21,13 +21,25 @@ pub struct Line<J> {
 const BESIDE_M: f64 = 5e-4;
 /// What a turned hand counts, metres per radian: the fingertips are as far from the tool's middle.
 const TIP_LEVER_M: f64 = 0.05;
-/// How often the steps are halved when the hand strays.
-const HALVINGS: u32 = 3;
+/// The shortest step, as a part of the longest.
+const SHORTEST: f64 = 1.0 / 8.0;
+/// How much farther the hand strays on a step of twice the length: as the square.
+const DOUBLED: f64 = 4.0;
+/// Steps that are longer by no more than this part of themselves count as equal.
+const ROUNDING: f64 = 1e-9;
+
+impl<J> Line<J> {
+    /// How much of the line was reached, in `[0, 1]`.
+    pub fn share(&self) -> f64 {
+        self.shares.last().copied().unwrap_or(0.0)
+    }
+}
 
 /// Follows the hand from `from` (where the arm is at `arm`) by `displacement` (metres, world) without turning it.
 ///
-/// Between the steps the arm moves straight in joint space and the hand strays from the line; where it strays too far
-/// the steps are halved, and if that does not help the line ends there.
+/// Between the steps the arm moves straight in joint space and the hand strays from the line; where it strays too far, or
+/// the arm does not reach, steps are halved, and if that does not help the line ends there. Where it strays little they
+/// are doubled again.
 pub fn follow<M: Manipulator>(
     m: &Tabletop<M>,
     base: &[f64; 3],
@@ -35,45 +47,39 @@ pub fn follow<M: Manipulator>(
     from: &Isometry3<f64>,
     displacement: &Vector3<f64>,
 ) -> Line<M::Joints> {
-    let mut steps = (displacement.norm() / m.settings().line_step_m).ceil().clamp(1.0, 1000.0);
-    for _ in 0..HALVINGS {
-        let (line, strays) = follow_in(m, base, arm, from, displacement, steps);
-        if !strays {
-            return line;
-        }
-        steps *= 2.0;
-    }
-    follow_in(m, base, arm, from, displacement, steps).0
-}
-
-/// [`follow`] in a number of equal steps; also whether it ended because the hand strayed.
-fn follow_in<M: Manipulator>(
-    m: &Tabletop<M>,
-    base: &[f64; 3],
-    arm: &M::Joints,
-    from: &Isometry3<f64>,
-    displacement: &Vector3<f64>,
-    steps: f64,
-) -> (Line<M::Joints>, bool) {
-    let mut line = Line { arms: Vec::new(), share: 0.0 };
-    let mut here = *arm;
-    let mut i = 1.0;
-    while i <= steps {
-        let share = i / steps;
+    let length_m = displacement.norm();
+    let mut longest_m = m.settings().line_step_m;
+    let shortest_m = longest_m * SHORTEST;
+    let mut step_m = longest_m;
+    let mut line = Line { arms: Vec::new(), shares: Vec::new() };
+    let (mut here, mut done) = (*arm, 0.0);
+    while done < 1.0 && step_m >= shortest_m {
+        let left = 1.0 - done;
+        // What is left, in equal steps.
+        let steps = (left * length_m / step_m - ROUNDING).ceil();
+        let share = if steps > 1.0 { done + left / steps } else { 1.0 };
         let on_line = |share: f64| {
             Isometry3::from_parts(Translation3::from(from.translation.vector + displacement * share), from.rotation)
         };
-        let Some(next) = m.manipulator().inverse_near(base, &on_line(share), &here) else { return (line, false) };
+        let Some(next) = m.manipulator().inverse_near(base, &on_line(share), &here) else {
+            step_m /= 2.0;
+            longest_m = step_m;
+            continue;
+        };
         let at = |arm: M::Joints| Configuration { base: *base, arm };
         let between = m.robot().interpolate(&at(here), &at(next), 0.5);
-        let strayed = on_line((i - 0.5) / steps).inverse() * m.manipulator().world_from_tool(&between);
-        if strayed.translation.vector.norm() + TIP_LEVER_M * strayed.rotation.angle() > BESIDE_M {
-            return (line, true);
+        let strayed = on_line(done.midpoint(share)).inverse() * m.manipulator().world_from_tool(&between);
+        let beside_m = strayed.translation.vector.norm() + TIP_LEVER_M * strayed.rotation.angle();
+        if beside_m.is_nan() || beside_m > BESIDE_M {
+            step_m /= 2.0;
+            continue;
         }
         line.arms.push(next);
-        line.share = share;
-        here = next;
-        i += 1.0;
+        line.shares.push(share);
+        (here, done) = (next, share);
+        if DOUBLED * beside_m <= BESIDE_M {
+            step_m = longest_m.min(2.0 * step_m);
+        }
     }
-    (line, false)
+    line
 }

@@ -135,13 +135,13 @@ fn way_of<M: Manipulator>(
     probe.check(q, &open)?;
     let back = at_grasp.rotation * Vector3::new(-grasp.approach_m, 0.0, 0.0);
     let out = line::follow(m, &q.base, &q.arm, at_grasp, &back);
-    if out.share < m.settings().least_line_share {
+    if out.share() < m.settings().least_line_share {
         return Err(Refused::Unreachable);
     }
     probe.check(&at_end(q.base, &out.arms)?, &Contacts::default())?;
     let [least, best] = movable.lift_m;
     let up = line::follow(m, &q.base, &q.arm, at_grasp, &(Vector3::z() * best));
-    if up.share * best < least {
+    if up.share() * best < least {
         return Err(Refused::Unreachable);
     }
     check_lifted(m, picking, &at_end(q.base, &up.arms)?, probe)?;

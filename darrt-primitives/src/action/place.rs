@@ -118,7 +118,7 @@ fn way_of<M: Manipulator>(
     before: &mut Probe<'_, M>,
 ) -> Result<Way<M::Joints>, Refused<M>> {
     let out = line::follow(m, &q.base, &q.arm, at_place, &(-direction * m.settings().place.approach_m));
-    if out.share < m.settings().least_line_share {
+    if out.share() < m.settings().least_line_share {
         return Err(Refused::Unreachable);
     }
     before.check(&at_end(q.base, &out.arms)?, &Contacts::default())?;

@@ -27,10 +27,8 @@ struct Way<J> {
     down: Vec<J>,
     /// At the contact.
     contact: J,
-    /// Along the push at equal steps.
-    along: Vec<J>,
-    /// How much of the push the arm reaches.
-    share: f64,
+    /// Along the push as far as the arm reaches.
+    along: line::Line<J>,
 }
 
 /// How far before what is in its way the object stops, metres.
@@ -151,24 +149,24 @@ fn way_of<M: Manipulator>(
     let ahead = Vector3::new(end.direction.x, end.direction.y, 0.0);
     // The first step decides most often, so it is tried before anything else.
     let along = line::follow(m, &q.base, &q.arm, at_contact, &(ahead * end.length));
-    if along.share * end.length < LEAST_PUSH_M.min(end.length) {
+    if along.share() * end.length < LEAST_PUSH_M.min(end.length) {
         return Err(Refused::Unreachable);
     }
-    probe.place(push.object, &push.pose_at(along.share));
+    probe.place(push.object, &push.pose_at(along.share()));
     let pushed = probe.check(&at_end(q.base, &along.arms)?, &touching);
     probe.place(push.object, push.pose);
     pushed?;
     let back = line::follow(m, &q.base, &q.arm, at_contact, &(-ahead * settings.standoff_m));
-    let standoff = *back.arms.last().filter(|_| back.share >= 1.0).ok_or(Refused::Unreachable)?;
+    let standoff = *back.arms.last().filter(|_| back.share() >= 1.0).ok_or(Refused::Unreachable)?;
     let mut behind = **at_contact;
     behind.translation.vector -= ahead * settings.standoff_m;
     let up = line::follow(m, &q.base, &standoff, &behind, &(Vector3::z() * settings.approach_m));
-    if up.share < m.settings().least_line_share {
+    if up.share() < m.settings().least_line_share {
         return Err(Refused::Unreachable);
     }
     probe.check(&at_end(q.base, &up.arms)?, &Contacts::default())?;
     let down = up.arms.iter().rev().copied().chain([standoff]).collect();
-    Ok(Way { base: q.base, down, contact: q.arm, along: along.arms, share: along.share })
+    Ok(Way { base: q.base, down, contact: q.arm, along })
 }
 
 /// What a push may touch.
@@ -187,14 +185,14 @@ fn assemble<M: Manipulator>(
     approach(m, &mut chain, object, way.base, &way.down, m.settings().push.gap_m, Contacts::default(), rng)?;
 
     let robot = |arm: &M::Joints| Configuration { base: way.base, arm: *arm };
-    let steps = way.along.len().max(1) as f64;
+    let reached = way.along.share();
     let contact = Waypoint { robot: robot(&way.contact), pushed: 0.0 };
-    let along = way.along.iter().zip(1_u32..);
+    let along = way.along.arms.iter().zip(&way.along.shares);
     let waypoints: Vec<_> = std::iter::once(contact)
-        .chain(along.map(|(arm, i)| Waypoint { robot: robot(arm), pushed: f64::from(i) / steps }))
+        .chain(along.map(|(arm, share)| Waypoint { robot: robot(arm), pushed: share / reached }))
         .collect();
     let mode = chain.end.mode.clone();
-    let carried = Carried::Pushed(object, push.pose_at(way.share));
+    let carried = Carried::Pushed(object, push.pose_at(reached));
     let motion = ArmMotion::new(m, &chain.end, &waypoints, carried, mode.clone(), mode);
     let instance = Instance {
         label: label::PUSH,

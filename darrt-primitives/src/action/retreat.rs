@@ -22,7 +22,7 @@ pub fn retreat<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>) -> Result<
     let tool = m.manipulator().world_from_tool(&here.robot);
     let back = tool.rotation * Vector3::new(-m.settings().retreat_m, 0.0, 0.0);
     let line = line::follow(m, &here.robot.base, &here.robot.arm, &tool, &back);
-    if line.share < m.settings().least_line_share {
+    if line.share() < m.settings().least_line_share {
         return Err(Infeasible::Unreachable);
     }
     let base = here.robot.base;
