@@ -11,11 +11,12 @@ use darrt_core::observe::Observer;
 use darrt_core::observe::accounts::Accounts;
 use darrt_core::plan::Plan;
 use darrt_core::problem::{Parts, Problem};
-use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler};
+use darrt_core::sample::{Full, GoalBiased, Placed, RandomSubset, RobotOrObjects, Sampler};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
 use darrt_core::smooth::SmoothOptions;
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
+use darrt_core::space::Place;
 use darrt_core::verify::{Refusal, Solution, Verified, Verifier};
 use darrt_primitives::detour::Detour;
 use darrt_primitives::validity::SceneValidity;
@@ -316,7 +317,9 @@ pub fn strategy(
         DistanceName::Euclidean => Box::new(Euclidean),
         DistanceName::ExactTour => Box::new(ExactTour),
     };
-    let sampler = Box::new(GoalBiased::new(sampler, sampling.goal_bias)?.in_part(GOAL_PARTS)?);
+    let sampler = GoalBiased::new(sampler, sampling.goal_bias)?.in_part(GOAL_PARTS)?;
+    // Around the goal's samples: one of several objects is then taken out of their way first.
+    let sampler = Box::new(Placed::new(sampler, Place::SupportEdge, sampling.edge_share)?);
     Ok(Strategy {
         sampler,
         distance,

@@ -82,8 +82,8 @@ pub const VARIANTS: [Variant; 30] = [
             s.extend.defer = false;
         });
     }),
-    variant("edge-samples", "three in ten samples of objects lie near the edge of a surface", |r| {
-        r.adjust = Some(|s| resample(s, |inner| Ok(Box::new(Placed::new(inner, Place::SupportEdge, 0.3)?))));
+    variant("no-edge-samples", "no object is sampled near the edge of a surface on purpose", |r| {
+        r.problem.sampling.edge_share = 0.0;
     }),
     variant("support-samples", "seven in ten samples of objects stand on a surface", |r| {
         r.adjust = Some(|s| resample(s, |inner| Ok(Box::new(Placed::new(inner, Place::OnSupport, 0.7)?))));
@@ -123,6 +123,7 @@ pub const VARIANTS: [Variant; 30] = [
     variant("paper", "Algorithm 1 as printed: straight lines, plain arg min, fine steps, no shortening", |r| {
         r.sampler = Some(SamplerName::RobotOrObjects);
         r.distance = Some(DistanceName::Greedy);
+        r.problem.sampling.edge_share = 0.0;
         r.adjust = Some(|s| {
             s.reroute = None;
             s.try_penalty_m = 0.0;

@@ -105,6 +105,8 @@ pub struct Sampling {
     pub object_share: f64,
     /// Share of samples drawn from the goal.
     pub goal_bias: f64,
+    /// Share of the sampled objects that are put near the edge of a surface instead, also in samples from the goal.
+    pub edge_share: f64,
     /// Share of robot samples that move only the base and keep the arm.
     pub base_only_share: f64,
     /// Which distance picks the tree node.
@@ -117,6 +119,7 @@ impl Default for Sampling {
             sampler: SamplerName::RobotOrObjects,
             object_share: 0.5,
             goal_bias: 0.2,
+            edge_share: 0.3,
             base_only_share: 0.0,
             distance: DistanceName::Greedy,
         }

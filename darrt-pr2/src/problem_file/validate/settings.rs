@@ -77,6 +77,7 @@ fn check_sampling(sampling: &Sampling) -> Result<(), Located> {
     let shares = [
         ("object_share", sampling.object_share),
         ("goal_bias", sampling.goal_bias),
+        ("edge_share", sampling.edge_share),
         ("base_only_share", sampling.base_only_share),
     ];
     shares.into_iter().try_for_each(|(name, share)| within(&format!("sampling.{name}"), share, 0.0, 1.0))
