@@ -30,7 +30,7 @@ impl Primitive<World> for StraightLineArmTransit {
     ) -> Result<Instances<World>, Infeasible> {
         let _ = (to, rng);
         let mut chain = Chain::at(from);
-        retreat(m, &mut chain)?;
+        retreat(m, &mut chain, m.settings().retreat_m)?;
         chain.finish()
     }
 }

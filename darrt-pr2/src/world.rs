@@ -228,9 +228,10 @@ fn settings(problem: &ProblemFile, side: Side) -> Result<ActionSettings<ArmConfi
                 .filter_map(|d| Vector3::from(*d).try_normalize(1e-9))
                 .collect(),
             approach_m: problem.place.approach_m,
+            retreat_m: problem.place.retreat_m,
             release_opening_m: RELEASE_OPENING,
         },
-        retreat_m: push.retreat_m.min(problem.place.retreat_m),
+        retreat_m: push.retreat_m,
         least_line_share: 0.5,
         line_step_m: 0.05,
         drives: [problem.allows(PrimitiveName::BaseTransit), problem.allows(PrimitiveName::BaseRigidTransfer)],

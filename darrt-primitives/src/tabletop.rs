@@ -81,6 +81,8 @@ pub struct PlaceSettings {
     pub approach_directions: Vec<Vector3<f64>>,
     /// Length of that motion, metres.
     pub approach_m: f64,
+    /// How far the hand then backs out in a straight line, metres.
+    pub retreat_m: f64,
     /// How much farther than the held thickness the fingers open to let go, metres.
     pub release_opening_m: f64,
 }
@@ -92,7 +94,7 @@ pub struct ActionSettings<J> {
     pub push: PushSettings,
     /// Place.
     pub place: PlaceSettings,
-    /// How far the hand retreats in a straight line, metres.
+    /// How far a hand that stands at an object backs out in a straight line before it does anything else, metres.
     pub retreat_m: f64,
     /// Part of an approach or retreat that is enough when the arm reaches no farther, in `(0, 1]`.
     pub least_line_share: f64,

@@ -69,6 +69,20 @@ fn a_short_push_arrives_too() {
 }
 
 #[test]
+fn fingertips_that_pass_above_an_object_do_not_push_it() {
+    let height_m = 2.0 * honest_table().unwrap().movable(object(0)).unwrap().half_height_m;
+    for (clearance_m, refusal) in [(0.5 * height_m, None), (height_m, Some(Infeasible::NoContact))] {
+        let m = altered_table(Gantry::new().unwrap(), |_, s| s.push.fingertip_clearance_m = clearance_m).unwrap();
+        let from = start(&m);
+        let mut target = *from.object(object(0)).unwrap();
+        target.translation.x += 0.1;
+        let act = |seed| push(&m, &from, object(0), &target, &mut stream(seed, 0, 0, Purpose::Extend)).err();
+        assert!((0..64).map(act).any(|found| found == refusal), "{clearance_m}");
+        assert!(refusal.is_none() || (0..64).map(act).all(|found| found == refusal), "{clearance_m}");
+    }
+}
+
+#[test]
 fn a_hand_at_an_object_backs_out_before_it_pushes_again() {
     let m = honest_table().unwrap();
     let from = start(&m);

@@ -133,7 +133,7 @@ fn retreats_keep_their_laws() {
     let m = honest_table().unwrap();
     check_action(&m, engaged(&m), |from, _| {
         let mut chain = Chain::at(from);
-        retreat(&m, &mut chain)?;
+        retreat(&m, &mut chain, m.settings().retreat_m)?;
         chain.finish()
     });
 }

@@ -129,7 +129,7 @@ impl Real {
             }
             Step::Retreat => {
                 let mut chain = Chain::at(from);
-                retreat(m, &mut chain)?;
+                retreat(m, &mut chain, m.settings().retreat_m)?;
                 chain.finish()
             }
         }

@@ -105,7 +105,8 @@ pub struct Sampling {
     pub object_share: f64,
     /// Share of samples drawn from the goal.
     pub goal_bias: f64,
-    /// Share of the sampled objects that are put near the edge of a surface instead, also in samples from the goal.
+    /// Share of the sampled objects that are put near the edge of a surface instead, also in samples from the goal; at
+    /// most 0.9, so that goals are sampled too.
     pub edge_share: f64,
     /// Share of robot samples that move only the base and keep the arm.
     pub base_only_share: f64,

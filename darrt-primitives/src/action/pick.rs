@@ -44,7 +44,7 @@ pub fn pick<M: Manipulator>(
         return Err(Infeasible::NoGrasp);
     }
     let mut chain = Chain::at(from);
-    retreat(m, &mut chain)?;
+    retreat(m, &mut chain, m.settings().retreat_m)?;
     let beside = from.mode.engaged_with(object).ok_or(Infeasible::NoGrasp)?;
     let mut fitted = 0;
     let mut why = Infeasible::NoGrasp;

@@ -159,6 +159,6 @@ fn assemble<M: Manipulator>(
         reversible: false,
     };
     chain.push(m, instance);
-    retreat(m, &mut chain)?;
+    retreat(m, &mut chain, m.settings().place.retreat_m)?;
     chain.finish()
 }

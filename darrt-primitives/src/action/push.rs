@@ -51,6 +51,10 @@ pub fn push<M: Manipulator>(
     let settings = &m.settings().push;
     let movable = m.movable(object).filter(|o| o.is_pushable).ok_or(Infeasible::NoContact)?;
     let radius = movable.round_radius_m.ok_or(Infeasible::NoContact)?;
+    if settings.fingertip_clearance_m >= 2.0 * movable.half_height_m {
+        // The fingertips would pass above it.
+        return Err(Infeasible::NoContact);
+    }
     let surface = from.mode.support_of(object).and_then(|s| m.surface(s)).ok_or(Infeasible::OffSupport)?;
     let pose = from.object(object).ok_or(Infeasible::NoContact)?;
 
@@ -71,7 +75,7 @@ pub fn push<M: Manipulator>(
     let push = Pushing { object, pose, at_contact: &at_contact, end: &end };
     probe.check_hand(&at_contact, &contacts(object)).map_err(Infeasible::Blocked)?;
     let mut chain = Chain::at(from);
-    retreat(m, &mut chain)?;
+    retreat(m, &mut chain, m.settings().retreat_m)?;
     let way = stance(m, from, &wanted, rng, |q| way_of(m, q, &push, &mut probe))?;
     assemble(m, chain, &push, &way, rng)
 }

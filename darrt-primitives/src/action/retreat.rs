@@ -11,16 +11,16 @@ use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, TouchReason};
 use crate::tabletop::Tabletop;
 
-/// If the hand stands at an object, backs it out along its own axis; else does nothing.
+/// If the hand stands at an object, backs it out along its own axis by `by_m` metres; else does nothing.
 ///
 /// # Errors
 /// [`Infeasible::Unreachable`] if the arm cannot follow far enough.
-pub fn retreat<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>) -> Result<(), Infeasible> {
+pub fn retreat<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>, by_m: f64) -> Result<(), Infeasible> {
     let here = &chain.end;
     let Some(object) = here.mode.engaged() else { return Ok(()) };
     let after = here.mode.disengaged().ok_or(Infeasible::Unreachable)?;
     let tool = m.manipulator().world_from_tool(&here.robot);
-    let back = tool.rotation * Vector3::new(-m.settings().retreat_m, 0.0, 0.0);
+    let back = tool.rotation * Vector3::new(-by_m, 0.0, 0.0);
     let line = line::follow(m, &here.robot.base, &here.robot.arm, &tool, &back);
     if line.share() < m.settings().least_line_share {
         return Err(Infeasible::Unreachable);

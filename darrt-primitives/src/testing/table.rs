@@ -143,7 +143,12 @@ fn settings() -> ActionSettings<motion::Joints> {
             edge_rule: EdgeRule::NearestEdgePoint,
             edge_distance_m: [0.02, 0.06],
         },
-        place: PlaceSettings { approach_directions: vec![-Vector3::z()], approach_m: 0.1, release_opening_m: 0.01 },
+        place: PlaceSettings {
+            approach_directions: vec![-Vector3::z()],
+            approach_m: 0.1,
+            retreat_m: 0.1,
+            release_opening_m: 0.01,
+        },
         retreat_m: 0.1,
         least_line_share: 0.5,
         line_step_m: 0.02,

@@ -16,6 +16,8 @@ use crate::picture::palette;
 const WIDTH: f64 = 540.0;
 /// Height of one row, page units.
 const ROW: f64 = 30.0;
+/// Width of a letter of a variant's name, page units; at 11.5 few are wider.
+const LETTER: f64 = 6.8;
 /// Half the height of a box, page units.
 const HALF: f64 = 7.5;
 /// Dots that are drawn per row at most; more would only be a smear.
@@ -24,7 +26,10 @@ const MOST_DOTS: usize = 400;
 /// The boxes of one problem.
 pub(super) fn draw(problem: &str, rows: &[(&Summary, Vec<&Record>)], axis: &LogAxis, look: &Look) -> String {
     let height = 28.0 + ROW * rows.len() as f64 + BELOW;
-    let area = Area { left: 118.0, top: 28.0, width: WIDTH - 132.0, height: ROW * rows.len() as f64 };
+    let letters = rows.iter().map(|(summary, _)| summary.variant.chars().count()).max().unwrap_or(0);
+    // A name that would leave no room for the boxes is cut.
+    let left = (20.0 + LETTER * letters as f64).min(WIDTH / 2.0);
+    let area = Area { left, top: 28.0, width: WIDTH - 14.0 - left, height: ROW * rows.len() as f64 };
     let mut svg = image(WIDTH, height, &format!("{problem}: times of all runs"));
     title(&area, problem, &mut svg);
     axis.draw(&area, &mut svg);

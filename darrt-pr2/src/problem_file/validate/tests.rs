@@ -135,7 +135,7 @@ fn ranges_and_shares_are_bounded() {
     refused_more("[bounds]\nobject_x = [-2, -0.5]", &["`object[0].at[0]`", "`bounds.object_x`"]);
     refused_more("[sampling]\nobject_share = 1.5", &["`sampling.object_share`", "1.5", "[0, 1]"]);
     refused_more("[sampling]\ngoal_bias = -0.1", &["`sampling.goal_bias`", "-0.1", "[0, 1]"]);
-    refused_more("[sampling]\nedge_share = 1.5", &["`sampling.edge_share`", "1.5", "[0, 1]"]);
+    refused_more("[sampling]\nedge_share = 1.0", &["`sampling.edge_share`", "1", "[0, 0.9]"]);
     refused_more("[budget]\ntime_limit_s = 0", &["`budget.time_limit_s`", "greater than 0"]);
     refused_more("[budget]\nnodes = 0", &["`budget.nodes`", "greater than 0"]);
     refused_more("[push]\nedge_distance_m = [0.1, 0.05]", &["`push.edge_distance_m`", "[0.1, 0.05]"]);
