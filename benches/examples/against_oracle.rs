@@ -91,7 +91,7 @@ fn main() -> ExitCode {
         println!("the argument is how many states to ask about, a whole number");
         return ExitCode::FAILURE;
     };
-    let all = held_motions(usize::try_from(count / 10 / LOOKS).unwrap());
+    let all = held_motions(usize::try_from((count / 10 / LOOKS).max(1)).unwrap());
     let threads = thread::available_parallelism().map_or(1, usize::from) as u64;
     let tallies: Vec<_> = thread::scope(|scope| {
         let shares = all.chunks(all.len().div_ceil(usize::try_from(threads).unwrap()).max(1));
