@@ -17,8 +17,12 @@ pub type Instances<D> = Vec<Instance<D>>;
 pub enum Infeasible {
     /// No grasp of the object fits.
     NoGrasp,
+    /// No grasp that fits would hold the object against its weight.
+    NoHold,
     /// No contact from which the object could be moved the right way.
     NoContact,
+    /// The object would not stay at the contacts while it is pushed, or is too heavy to be pushed.
+    UnstablePush,
     /// No robot configuration reaches the pose that is needed.
     Unreachable,
     /// Reached only outside the limits of the robot.

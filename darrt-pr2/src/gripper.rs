@@ -16,6 +16,11 @@ pub const TIP_HALF_WIDTH: f64 = 0.0113;
 /// Half the width of a finger, along z, m.
 pub const FINGER_HALF_WIDTH: f64 = 0.0276;
 
+/// Length of a pad from the tip of the finger back, m.
+pub const PAD_LENGTH: f64 = 0.036;
+/// Force of each finger on what it holds, N: the lower end of what is quoted for this gripper, 50 to 100.
+pub const GRIP_FORCE_N: f64 = 50.0;
+
 /// Finger joint in the wrist frame, m (y mirrored for the right finger).
 const FINGER_JOINT: (f64, f64) = (0.076_91, 0.01);
 /// Tip joint in the finger frame, m (y mirrored for the right finger).

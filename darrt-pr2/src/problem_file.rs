@@ -19,6 +19,7 @@ pub(crate) mod paths;
 pub mod primitive_name;
 pub mod read;
 pub mod robot;
+pub mod safety;
 pub mod settings;
 pub mod shape;
 pub mod suggest;
@@ -34,6 +35,7 @@ pub use grasps::{GraspFamily, OverheadGrasp, RimGrasp, SideGrasp};
 pub use object::{Friction, Object, Symmetry};
 pub use primitive_name::PrimitiveName;
 pub use robot::{ArmSide, Limits, Robot, RobotModel};
+pub use safety::Safety;
 pub use settings::{Budget, DistanceName, EdgeRule, PaperFigures, Place, Push, SamplerName, Sampling, Transit};
 pub use shape::ShapeSpec;
 pub use world::{Bounds, Obstacle, Surface};
@@ -89,6 +91,9 @@ pub struct ProblemFile {
     pub objects: Vec<Object>,
     /// Where the objects shall end.
     pub goal: Goal,
+    /// How far robot and objects keep from what they need not touch.
+    #[serde(default)]
+    pub safety: Safety,
     /// Parameters of the primitive Push.
     #[serde(default)]
     pub push: Push,

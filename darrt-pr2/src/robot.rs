@@ -25,6 +25,8 @@ const LEAST_WRIST_DISTANCE: f64 = 0.3;
 const DRAWN_REACH: f64 = 0.78;
 /// Shoulder pan for which a base is drawn, radians for the right arm: the arm works in front of its own side.
 const DRAWN_PAN: [f64; 2] = [-1.4, 0.45];
+/// The heaviest object that an arm carries, kilograms (Willow Garage, PR2 hardware specifications).
+const PAYLOAD_KG: f64 = 1.8;
 /// Held objects are rounded up to this when travel is bounded, metres.
 const HELD_STEP: f64 = 0.05;
 
@@ -43,6 +45,14 @@ impl Hand for Gripper {
 
     fn tip_half_width_m(&self) -> f64 {
         gripper::TIP_HALF_WIDTH
+    }
+
+    fn pad_length_m(&self) -> f64 {
+        gripper::PAD_LENGTH
+    }
+
+    fn grip_force_n(&self) -> f64 {
+        gripper::GRIP_FORCE_N
     }
 }
 
@@ -312,6 +322,10 @@ impl Manipulator for Pr2 {
         }
         rigid.fill(drive);
         lever_travel(&self.radii(held_reach_m))
+    }
+
+    fn payload_kg(&self) -> f64 {
+        PAYLOAD_KG
     }
 
     fn joint_weights_m(&self) -> &[f64] {

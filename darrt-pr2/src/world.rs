@@ -13,7 +13,7 @@ use darrt_primitives::mode::{Mode, SurfaceId};
 use darrt_primitives::object_space::{ObjectSpace, ObjectSpaceParts};
 use darrt_primitives::push::edge_stop::{EdgeRule, RimReach};
 use darrt_primitives::tabletop::{
-    ActionSettings, Movable, PlaceSettings, PushSettings, Support, Tabletop, TabletopState,
+    ActionSettings, Movable, ObjectFriction, PlaceSettings, PushSettings, Support, Tabletop, TabletopState,
 };
 use nalgebra::{Isometry3, Point2, Vector3};
 
@@ -201,6 +201,9 @@ fn movable(
         grasps: families(object, robot.hand()).map_err(named)?,
         rim,
         lift_m: lift_m(object),
+        mass_kg: object.mass_kg,
+        friction: ObjectFriction { table: object.friction.table, fingers: object.friction.fingers },
+        max_tilt_rad: object.max_tilt_deg().to_radians(),
     };
     Ok((space, movable))
 }
@@ -231,6 +234,7 @@ fn settings(problem: &ProblemFile, side: Side) -> Result<ActionSettings<ArmConfi
             retreat_m: problem.place.retreat_m,
             release_opening_m: RELEASE_OPENING,
         },
+        safety: problem.safety.settings(),
         retreat_m: push.retreat_m,
         least_line_share: 0.5,
         line_step_m: 0.05,

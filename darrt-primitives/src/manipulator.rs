@@ -69,6 +69,16 @@ pub trait Hand: Send + Sync {
 
     /// Half the width of a fingertip along the tool's z axis, metres.
     fn tip_half_width_m(&self) -> f64;
+
+    /// How long a pad is along the tool's x axis, from its tip back, metres; by default as wide as long.
+    fn pad_length_m(&self) -> f64 {
+        2.0 * self.tip_half_width_m()
+    }
+
+    /// Force with which each finger closes on what it holds, newton; infinite (the default): never the limit.
+    fn grip_force_n(&self) -> f64 {
+        f64::INFINITY
+    }
 }
 
 /// A mobile manipulator.
@@ -138,6 +148,16 @@ pub trait Manipulator: Send + Sync + 'static {
         let bound = self.travel_m(a, b, held_reach_m);
         out.fill(bound);
         bound
+    }
+
+    /// The heaviest object that the arm carries, kilograms; infinite (the default): never the limit.
+    fn payload_kg(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// The largest force with which the arm can push sideways, newton; infinite (the default): never the limit.
+    fn push_force_n(&self) -> f64 {
+        f64::INFINITY
     }
 
     /// Typical metres of hand travel per unit of each joint: weights of the arm's distance.

@@ -40,12 +40,27 @@ pub struct Movable {
     pub rim: RimReach,
     /// How far Pick lifts it: at least and at best, metres.
     pub lift_m: [f64; 2],
+    /// Its mass, kilograms.
+    pub mass_kg: f64,
+    /// Friction with what it stands on and with the fingers.
+    pub friction: ObjectFriction,
+    /// How far its z axis may lean from the vertical while it is carried, radians.
+    pub max_tilt_rad: f64,
 }
 
 impl std::fmt::Debug for Movable {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Movable").field("body", &self.body).field("surfaces", &self.surfaces).finish_non_exhaustive()
     }
+}
+
+/// Coefficients of Coulomb friction of an object.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ObjectFriction {
+    /// With the surface under it.
+    pub table: f64,
+    /// With the fingers.
+    pub fingers: f64,
 }
 
 /// A support surface and the fixed bodies under it, which what stands on it touches.
@@ -87,6 +102,39 @@ pub struct PlaceSettings {
     pub release_opening_m: f64,
 }
 
+/// Distances that plans keep, metres, each at least 0. The margins are kept where the room allows, the least ones always.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SafetySettings {
+    /// Wanted distance of the robot from everything else.
+    pub robot_margin_m: f64,
+    /// Wanted distance of a held object from everything else.
+    pub held_margin_m: f64,
+    /// Wanted distance of a pushed object from everything but what it slides on and what pushes it.
+    pub object_margin_m: f64,
+    /// Least distance of every pair that need not be near.
+    pub least_margin_m: f64,
+    /// Least distance of a pair that must be near and does not touch: the hand or what it holds, against the object that it
+    /// handles and against what that object stands on.
+    pub contact_margin_m: f64,
+    /// How far inside the edge of a surface the centre of an object is set down or pushed, unless the goal lies nearer.
+    pub edge_margin_m: f64,
+}
+
+impl Default for SafetySettings {
+    /// What a careful engineer keeps with a robot that knows where it is to within a centimetre: 20 mm about the robot and
+    /// what it holds, 10 mm about what it pushes, never less than 5 mm, 2 mm beside what it handles, 30 mm inside edges.
+    fn default() -> Self {
+        Self {
+            robot_margin_m: 0.02,
+            held_margin_m: 0.02,
+            object_margin_m: 0.01,
+            least_margin_m: 0.005,
+            contact_margin_m: 0.002,
+            edge_margin_m: 0.03,
+        }
+    }
+}
+
 /// Parameters of all actions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActionSettings<J> {
@@ -94,6 +142,8 @@ pub struct ActionSettings<J> {
     pub push: PushSettings,
     /// Place.
     pub place: PlaceSettings,
+    /// Distances that plans keep.
+    pub safety: SafetySettings,
     /// How far a hand that stands at an object backs out in a straight line before it does anything else, metres.
     pub retreat_m: f64,
     /// Part of an approach or retreat that is enough when the arm reaches no farther, in `(0, 1]`.

@@ -17,8 +17,12 @@ pub enum Bucket {
     Budget,
     /// Tried; the object has no fitting grasp.
     NoGrasp,
+    /// Tried; no fitting grasp would hold the object.
+    NoHold,
     /// Tried; no contact moves the object the right way.
     NoContact,
+    /// Tried; the object would not stay at the contacts, or is too heavy.
+    UnstablePush,
     /// Tried; no robot configuration reaches.
     Unreachable,
     /// Tried, or run; outside limits.
@@ -49,12 +53,14 @@ pub enum Bucket {
 
 impl Bucket {
     /// All buckets, in order.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 20] = [
         Self::NotUseful,
         Self::NotChosen,
         Self::Budget,
         Self::NoGrasp,
+        Self::NoHold,
         Self::NoContact,
+        Self::UnstablePush,
         Self::Unreachable,
         Self::Limits,
         Self::OffSupport,
@@ -77,7 +83,9 @@ impl Bucket {
             Self::NotChosen => "not chosen",
             Self::Budget => "budget",
             Self::NoGrasp => "no grasp",
+            Self::NoHold => "no hold",
             Self::NoContact => "no contact",
+            Self::UnstablePush => "unstable push",
             Self::Unreachable => "unreachable",
             Self::Limits => "limits",
             Self::OffSupport => "off support",
@@ -99,7 +107,9 @@ impl From<&Infeasible> for Bucket {
     fn from(why: &Infeasible) -> Self {
         match why {
             Infeasible::NoGrasp => Self::NoGrasp,
+            Infeasible::NoHold => Self::NoHold,
             Infeasible::NoContact => Self::NoContact,
+            Infeasible::UnstablePush => Self::UnstablePush,
             Infeasible::Unreachable => Self::Unreachable,
             Infeasible::Limits => Self::Limits,
             Infeasible::OffSupport => Self::OffSupport,

@@ -52,6 +52,10 @@ pub struct Object {
     /// Which turns do not matter; by default `z` for a shape that is round about z, else `none`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub symmetry: Option<Symmetry>,
+    /// How far its axis may lean from the vertical while it is carried, degrees, 0 to 180; by default 45 for a bowl and for
+    /// a round object that is taller than its radius (they may be full), else 180.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_tilt_deg: Option<f64>,
     /// The surface on which the object starts.
     pub on: String,
     /// Where its centre starts on that surface: world x, y in metres.
@@ -102,12 +106,21 @@ impl Object {
         }
     }
 
+    /// How far its axis may lean while it is carried, degrees.
+    pub fn max_tilt_deg(&self) -> f64 {
+        self.max_tilt_deg.unwrap_or(if self.shape.may_be_full() { UPRIGHT_TILT_DEG } else { 180.0 })
+    }
+
     /// Fills in what depends on other keys.
     pub(crate) fn normalise(&mut self) {
         self.symmetry = Some(self.symmetry());
         self.pushable = Some(self.pushable());
+        self.max_tilt_deg = Some(self.max_tilt_deg());
     }
 }
+
+/// How far what may be full leans while it is carried, unless the file says otherwise, degrees.
+const UPRIGHT_TILT_DEG: f64 = 45.0;
 
 fn default_mass() -> f64 {
     0.5

@@ -85,6 +85,16 @@ impl ShapeSpec {
         }
     }
 
+    /// May something be in it that must not be spilt: is it a bowl, or round and taller than its radius, as a mug or a
+    /// bottle is?
+    pub const fn may_be_full(&self) -> bool {
+        match self {
+            Self::Bowl { .. } => true,
+            Self::Cylinder { radius, height } | Self::Capsule { radius, height } => *height > *radius,
+            Self::Box { .. } | Self::Sphere { .. } | Self::Hull { .. } | Self::Mesh { .. } => false,
+        }
+    }
+
     /// How far the shape reaches below its origin (m), positive; `None` for a mesh, whose file must be read first.
     pub fn depth_below_origin(&self) -> Option<f64> {
         match self {

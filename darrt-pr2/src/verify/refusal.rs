@@ -42,6 +42,14 @@ pub enum RefusalKind {
     Push,
     /// An object does not stand on a surface where it must.
     Support,
+    /// A grasp that cannot hold its object.
+    Hold,
+    /// A held object leans farther than it may.
+    Tilt,
+    /// Two bodies that need not be near are nearer than the least margin.
+    Margin,
+    /// An object is set down or pushed nearer to an edge than it may.
+    Edge,
     /// The goal does not hold at the end.
     Goal,
     /// Nothing is known to be wrong: the judgement was given up.

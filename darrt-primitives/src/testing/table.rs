@@ -20,7 +20,10 @@ use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Mode, SurfaceId};
 use crate::object_space::{ObjectSpace, ObjectSpaceParts};
 use crate::push::edge_stop::{EdgeRule, RimReach};
-use crate::tabletop::{ActionSettings, Movable, PlaceSettings, PushSettings, Support, Tabletop, TabletopState};
+use crate::tabletop::{
+    ActionSettings, Movable, ObjectFriction, PlaceSettings, PushSettings, SafetySettings, Support, Tabletop,
+    TabletopState,
+};
 
 /// The domain.
 pub type Table = Tabletop<Gantry>;
@@ -129,6 +132,9 @@ fn movable(
         grasps: vec![Box::new(grasps) as Box<dyn GraspFamily>],
         rim: RimReach::default(),
         lift_m: [0.05, 0.15],
+        mass_kg: 0.3,
+        friction: ObjectFriction { table: 0.3, fingers: 0.5 },
+        max_tilt_rad: std::f64::consts::PI,
     };
     Ok((space, movable))
 }
@@ -149,6 +155,7 @@ fn settings() -> ActionSettings<motion::Joints> {
             retreat_m: 0.1,
             release_opening_m: 0.01,
         },
+        safety: SafetySettings::default(),
         retreat_m: 0.1,
         least_line_share: 0.5,
         line_step_m: 0.02,

@@ -38,6 +38,7 @@ fn check_object(problem: &ProblemFile, object: &Object, key: &str) -> Result<(),
     positive(&format!("{key}.mass_kg"), object.mass_kg)?;
     within(&format!("{key}.friction.table"), object.friction.table, 0.0, LARGEST_FRICTION)?;
     within(&format!("{key}.friction.fingers"), object.friction.fingers, 0.0, LARGEST_FRICTION)?;
+    within(&format!("{key}.max_tilt_deg"), object.max_tilt_deg(), 0.0, 180.0)?;
     check_surfaces(problem, object, key)?;
     check_roundness(object, key)?;
     for (index, family) in object.grasps.iter().enumerate() {

@@ -4,14 +4,18 @@ use super::names::posture;
 use super::numbers::{length, ordered, positive, within};
 use super::objects::{LONGEST_MOTION, WIDEST_GAP};
 use crate::problem_file::error::{Flaw, Located};
-use crate::problem_file::{Place, PrimitiveName, ProblemFile, Push, Sampling};
+use crate::problem_file::{Place, PrimitiveName, ProblemFile, Push, Safety, Sampling};
 
 /// Most directions from which Place may approach, and most postures.
 const MOST_ENTRIES: usize = 64;
 
-/// Checks primitives, push, place, sampling, transit and budget.
+/// Largest distance of `[safety]` (m).
+const LARGEST_MARGIN: f64 = 0.5;
+
+/// Checks primitives, safety, push, place, sampling, transit and budget.
 pub(super) fn check(problem: &ProblemFile) -> Result<(), Located> {
     check_primitives(&problem.primitives)?;
+    check_safety(&problem.safety)?;
     check_push(&problem.push)?;
     check_place(&problem.place)?;
     check_sampling(&problem.sampling)?;
@@ -38,6 +42,18 @@ fn check_primitives(names: &[PrimitiveName]) -> Result<(), Located> {
             let (name, taken_by) = (name.to_string(), format!("primitives[{first}]"));
             return Err(Flaw::Duplicate { name, taken_by }.at(format!("primitives[{index}]")));
         }
+    }
+    Ok(())
+}
+
+/// The least margins are no larger than the wanted ones.
+fn check_safety(safety: &Safety) -> Result<(), Located> {
+    for (name, value) in safety.lengths() {
+        within(&format!("safety.{name}"), value, 0.0, LARGEST_MARGIN)?;
+    }
+    within("safety.contact_margin_m", safety.contact_margin_m, 1e-4, safety.least_margin_m)?;
+    for (name, value) in safety.lengths().into_iter().take(3) {
+        within(&format!("safety.{name}"), value, safety.least_margin_m, LARGEST_MARGIN)?;
     }
     Ok(())
 }
