@@ -15,7 +15,7 @@ use smallvec::SmallVec;
 use crate::arm_space::ArmSpace;
 use crate::grasp::GraspFamily;
 use crate::manipulator::{Configuration, Manipulator};
-use crate::mode::{Contacts, Mode, SurfaceId};
+use crate::mode::{Contacts, Held, Mode, SurfaceId};
 use crate::object_space::ObjectSpace;
 use crate::push::edge_stop::{EdgeRule, RimReach};
 use crate::surroundings::{Strictness, Surroundings};
@@ -254,6 +254,12 @@ impl<M: Manipulator> Tabletop<M> {
     pub fn held_reach_m(&self, mode: &Mode) -> f64 {
         let Some(held) = mode.held() else { return 0.0 };
         held.tool_from_object.translation.vector.norm() + self.movable(held.object).map_or(0.0, |o| o.reach_m)
+    }
+
+    /// How far the z axis of what the hand holds may lean from the vertical while it is carried, radians in `[0, pi]`; `pi`
+    /// for an object that is not of this domain.
+    pub fn tilt_limit_rad(&self, held: &Held) -> f64 {
+        self.movable(held.object).map_or(std::f64::consts::PI, |object| object.max_tilt_rad)
     }
 
     fn tool_point(&self, q: &Configuration<M::Joints>) -> Vector3<f64> {
