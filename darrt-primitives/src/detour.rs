@@ -142,6 +142,9 @@ impl<M: Manipulator> Search<'_, M> {
             if self.m.objects().get(held.object.index()).is_some_and(|space| !space.contains(pose)) {
                 return false;
             }
+            if self.m.tilt_left_rad(&self.state).is_some_and(|left| left < 0.0) {
+                return false;
+            }
         }
         let (moved, against) = &self.pairs;
         let around = self.m.surroundings();

@@ -7,6 +7,7 @@
 //! | what is held, what rests on what? | [`mode`] |
 //! | how do objects slide when pushed? | [`push`], [`contact`] |
 //! | how can an object be held? | [`grasp`] |
+//! | how far may what is held lean? | [`tilt`] |
 //! | how does a wish become motions? | [`action`], [`arm_motion`] |
 //! | who may touch whom, and what is too near? | [`surroundings`] |
 //! | what is in the way, and is there a way around? | [`validity`], [`detour`] |
@@ -34,6 +35,7 @@ pub mod surroundings;
 pub mod tabletop;
 #[cfg(feature = "testing")]
 pub mod testing;
+pub mod tilt;
 pub mod validity;
 mod way;
 pub mod wish;

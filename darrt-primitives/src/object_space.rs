@@ -108,7 +108,7 @@ pub fn upright(position: Vector3<f64>, yaw: f64) -> Isometry3<f64> {
 }
 
 /// The object's own z axis in the world: the third column of its rotation matrix.
-fn own_axis(pose: &Isometry3<f64>) -> Vector3<f64> {
+pub(crate) fn own_axis(pose: &Isometry3<f64>) -> Vector3<f64> {
     let q = pose.rotation.quaternion();
     Vector3::new(2.0 * (q.i * q.k + q.w * q.j), 2.0 * (q.j * q.k - q.w * q.i), 1.0 - 2.0 * (q.i * q.i + q.j * q.j))
 }

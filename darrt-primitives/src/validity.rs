@@ -25,6 +25,7 @@ use crate::manipulator::Manipulator;
 use crate::mode::Contacts;
 use crate::surroundings::{KEPT_BETWEEN, Surroundings, Worker};
 use crate::tabletop::{Tabletop, TabletopState};
+use crate::tilt::UNSEEN_RAD;
 
 /// The scene as seen by a table-top domain.
 #[derive(Debug, Clone)]
@@ -92,7 +93,12 @@ impl SceneValidity {
             return Err(Blame { kind: BlockKind::Limits, first: name, second: "the object's bounds".into(), place });
         }
         match state.mode.support_of(id).map(|s| m.surface(s)) {
-            None if state.mode.held().is_some_and(|held| held.object == id) => Ok(()),
+            None if state.mode.held().is_some_and(|held| held.object == id) => match m.tilt_left_rad(state) {
+                Some(left) if left < 0.0 => {
+                    Err(Blame { kind: BlockKind::Limits, first: name, second: "how far it may lean".into(), place })
+                }
+                _ => Ok(()),
+            },
             Some(Some(surface)) if surface.contains(&Point2::new(place[0], place[1])) => Ok(()),
             Some(Some(surface)) => {
                 Err(Blame { kind: BlockKind::OffSupport, first: name, second: surface.name().into(), place })
@@ -114,6 +120,15 @@ impl SceneValidity {
             }
         }
         least
+    }
+
+    /// How far the parameter may grow before a held object could lean too far, between the states looked at: it tilts no
+    /// faster than the joints turn.
+    fn to_tilt<M: Manipulator>(m: &Tabletop<M>, state: &TabletopState<M>, tilting: f64) -> f64 {
+        match m.tilt_left_rad(state) {
+            Some(left) if tilting > 0.0 => (left.max(0.0) + UNSEEN_RAD) / tilting,
+            _ => f64::INFINITY,
+        }
     }
 
     /// Objects that moved still keep the rules.
@@ -199,6 +214,7 @@ impl SceneValidity {
         let (cap, least) = (strictness.cap_m / leg.fastest, unseen_m / leg.fastest);
         // Nothing touches up to here, and the rules were last found kept there.
         let (mut free, mut kept) = (t, t);
+        let tilting = m.tilt_travel_rad(&here.robot, &next.robot) / (leg.end - leg.begin);
         leg.watch(around, worker);
         loop {
             let until = around.free_until(worker, t, cap).map_err(|hit| (free, around.blame(&hit)))?;
@@ -207,7 +223,7 @@ impl SceneValidity {
             if t >= leg.end {
                 return Ok(());
             }
-            free = until.min(t + self.to_edge(m, here, leg));
+            free = until.min(t + self.to_edge(m, here, leg)).min(t + Self::to_tilt(m, here, tilting));
             t = if free + least >= leg.end { leg.end } else { free + least };
             instance.motion.at_into(m, t, next);
             // At the end of a motion the mode may change, which is judged apart.

@@ -248,6 +248,7 @@ impl<'a> Judge<'a> {
         let speeds = self.approach.speeds(&segment, &trial.extents, trial.act.pushed);
         self.stage.set_speeds(&speeds, parts, trial.skips());
         let arm_moves = from.joints != to.joints;
+        let turn_rad = segment.joints.iter().map(|joint| joint.abs()).sum();
         let mut now = from.clone();
         let mut i = usize::from(!place.is_first());
         let mut gone = 1;
@@ -270,7 +271,7 @@ impl<'a> Judge<'a> {
             self.stage.place(&self.world_from_robot, &self.links, &now.objects, gone);
             self.check_state(trial, time, &now, way)?;
             // OPTIMIZATION: states at which nothing would be looked at need not be made. The end always is.
-            let next = (i + 1 + self.idle_parts(trial, &now, travel_m, parts)).min(parts.max(i + 1));
+            let next = (i + 1 + self.idle_parts(trial, &now, (travel_m, turn_rad), parts)).min(parts.max(i + 1));
             gone = next - i;
             i = next;
         }

@@ -2,20 +2,17 @@
 
 use darrt_core::motion::Instance;
 use darrt_core::state::{ComponentId, ComponentSet};
-use rand::{Rng, RngExt};
+use rand::Rng;
 
-use super::stance::Probe;
+use super::fold::{Order, order};
 use super::{Chain, label};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Mode};
 use crate::tabletop::Tabletop;
 
-/// How often the arm folds to a posture while the base drives.
-const SHARE_VIA_POSTURE: f64 = 0.8;
-
-/// Moves base and arm to `target`, never both at once, in a random order and often through one of the settings'
-/// postures: the arm folds, the base drives, the arm unfolds. The empty hand opens to `gap_m`.
+/// Moves base and arm to `target`, never both at once. The arm drives along folded, or what it holds near the robot and
+/// upright, where that is worth the way; the module `fold` says when. The empty hand opens to `gap_m`.
 ///
 /// Base and arm are separate because their precision differs (paper section 5.1).
 pub fn travel<M: Manipulator>(
@@ -25,38 +22,17 @@ pub fn travel<M: Manipulator>(
     gap_m: f64,
     rng: &mut dyn Rng,
 ) {
-    let drives = chain.end.robot.base != target.base;
-    let arm_first = drives && rng.random_bool(0.5);
-    let posture =
-        if drives && rng.random_bool(SHARE_VIA_POSTURE) { clear_posture(m, chain, target, rng) } else { None };
-    if let Some(posture) = posture {
-        arm_to(m, chain, &posture, gap_m);
-        base_to(m, chain, &target.base, gap_m);
+    if chain.end.robot.base == target.base {
         arm_to(m, chain, &target.arm, gap_m);
-    } else if arm_first {
-        arm_to(m, chain, &target.arm, gap_m);
-        base_to(m, chain, &target.base, gap_m);
-    } else {
-        base_to(m, chain, &target.base, gap_m);
-        arm_to(m, chain, &target.arm, gap_m);
+        return;
     }
-}
-
-/// One of the postures, at random, in which nothing is in the way of the robot and of what it holds, neither where it
-/// stands nor where it goes.
-fn clear_posture<M: Manipulator>(
-    m: &Tabletop<M>,
-    chain: &Chain<M>,
-    target: &Configuration<M::Joints>,
-    rng: &mut dyn Rng,
-) -> Option<M::Joints> {
-    let mut probe = Probe::new(m, &chain.end, chain.end.mode.clone());
-    let mut is_clear =
-        |base: [f64; 3], arm: M::Joints| probe.is_clear(&Configuration { base, arm }, &Contacts::default());
-    let postures = &m.settings().postures;
-    let first = if postures.is_empty() { 0 } else { rng.random_range(0..postures.len()) };
-    let turned = postures.iter().cycle().skip(first).take(postures.len());
-    turned.copied().find(|arm| is_clear(chain.end.robot.base, *arm) && is_clear(target.base, *arm))
+    match order(m, chain, target, rng) {
+        Order::BaseFirst => {}
+        Order::ArmFirst => arm_to(m, chain, &target.arm, gap_m),
+        Order::Through(arm) => arm_to(m, chain, &arm, gap_m),
+    }
+    base_to(m, chain, &target.base, gap_m);
+    arm_to(m, chain, &target.arm, gap_m);
 }
 
 /// Moves the arm in a straight line in joint space; nothing if it is already there.

@@ -1,10 +1,13 @@
 //! Joint limits, and the bounds of base and objects.
 
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Vector3};
 
 use super::Judge;
 use crate::verify::motion::State;
 use crate::verify::refusal::RefusalKind;
+
+/// What rounding may do to the angle between two unit vectors, radians.
+const TILT_ROUNDING: f64 = 1e-6;
 
 impl Judge<'_> {
     /// Joint limits of a waypoint, bounds of base and objects.
@@ -37,6 +40,27 @@ impl Judge<'_> {
         let insides =
             ranges.iter().zip(pose.translation.vector.iter()).map(|([low, high], at)| (at - low).min(high - at));
         insides.fold(f64::INFINITY, f64::min)
+    }
+
+    /// How much farther a held object at `pose` may lean, radians; negative beyond its limit.
+    pub(super) fn tilt_left(&self, object: usize, pose: &Isometry3<f64>) -> f64 {
+        let limit = self.world.movables.get(object).map_or(180.0, |movable| movable.spec.max_tilt_deg()).to_radians();
+        if limit >= std::f64::consts::PI {
+            return f64::INFINITY;
+        }
+        limit + self.options.rounding.max(TILT_ROUNDING) - (pose.rotation * Vector3::z()).angle(&Vector3::z())
+    }
+
+    /// What is held leans no farther than it may.
+    pub(super) fn check_tilt(&self, object: usize, state: &State) -> Result<(), String> {
+        let Some(pose) = state.objects.get(object) else { return Ok(()) };
+        let left = self.tilt_left(object, pose);
+        if left >= 0.0 {
+            return Ok(());
+        }
+        let (name, angle) = (self.world.object_name(object), (pose.rotation * Vector3::z()).angle(&Vector3::z()));
+        let bound = self.world.movables.get(object).map_or(180.0, |movable| movable.spec.max_tilt_deg());
+        Err(format!("{name} leans {:.2} degrees while it is carried, at most {bound} are allowed", angle.to_degrees()))
     }
 
     pub(super) fn check_object_bounds(&self, object: usize, state: &State) -> Result<(), String> {

@@ -69,6 +69,10 @@ impl<'a> Judge<'a> {
         if let Some(holding) = trial.act.holding {
             self.check_object_bounds(holding.object, now)
                 .map_err(|text| site.refusal(time, RefusalKind::Bounds, text))?;
+            self.check_tilt(holding.object, now).map_err(|text| {
+                site.refusal(time, RefusalKind::Tilt, text)
+                    .about(self.world.object_name(holding.object), "the vertical")
+            })?;
         }
         if let Some([start, end]) = &trial.line {
             self.check_line(site, time, start, end)?;
@@ -79,7 +83,7 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// How many of the next `parts` parts of a segment, each at most `travel_m` long, may pass before
+    /// How many of the next `parts` parts of a segment, each at most `travel_m` long, whose joints turn by `turn_rad` in all, may pass before
     /// [`Judge::check_state`] could find a fault that it does not find now. None in a push and on a straight line, of which
     /// every state is looked at.
     #[expect(
@@ -87,12 +91,22 @@ impl<'a> Judge<'a> {
         clippy::cast_sign_loss,
         reason = "clamped to a range that fits any usize"
     )]
-    pub(super) fn idle_parts(&self, trial: &Trial<'a>, now: &State, travel_m: f64, parts: usize) -> usize {
+    pub(super) fn idle_parts(
+        &self,
+        trial: &Trial<'a>,
+        now: &State,
+        (travel_m, turn_rad): (f64, f64),
+        parts: usize,
+    ) -> usize {
         if !trial.skips() {
             return 0;
         }
-        let held = trial.act.holding.and_then(|holding| now.objects.get(holding.object));
-        let inside = held.map_or(f64::INFINITY, |pose| self.inside_object_bounds(pose) / travel_m);
+        let held = trial.act.holding.and_then(|holding| Some((holding.object, now.objects.get(holding.object)?)));
+        let inside = held.map_or(f64::INFINITY, |(object, pose)| {
+            // What tilts it is the arm, and no faster than its joints turn.
+            let upright = self.tilt_left(object, pose) / (turn_rad / parts.max(1) as f64);
+            (self.inside_object_bounds(pose) / travel_m).min(if turn_rad > 0.0 { upright } else { f64::INFINITY })
+        });
         self.stage.idle_parts().min(inside).clamp(0.0, parts as f64) as usize
     }
 

@@ -49,6 +49,14 @@ fn pushes_go_as_pushes_go() {
 }
 
 #[test]
+fn what_is_carried_leans_no_farther_than_it_may() {
+    let refusal =
+        refused(plans::carry(), 2, RefusalKind::Tilt, |plan| plan.problem.objects[0].max_tilt_deg = Some(0.0));
+    assert!(refusal.message.contains("while it is carried, at most 0"), "{refusal}");
+    about(&refusal, PLATE, "the vertical");
+}
+
+#[test]
 fn held_objects_are_rigid_to_the_hand() {
     use RefusalKind as K;
     let refusal = refused(plans::carry(), 2, K::Grasp, |plan| plate(waypoint(plan, 2, 3)).position[1] += 2e-6);

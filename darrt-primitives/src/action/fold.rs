@@ -1,0 +1,137 @@
+//! How the arm is held while the base drives: folded, unless the drive is so short that folding is not worth the way.
+//!
+//! An arm that sticks out meets things, and what its hand holds is carried level: a careful driver folds it first. Here the
+//! ways to drive are compared by what they cost: arm as it is, arm already where it shall go, or folded in between.
+
+use darrt_core::domain::Domain;
+use darrt_core::space::ComponentSpace;
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use rand::{Rng, RngExt};
+
+use super::Chain;
+use super::stance::Probe;
+use crate::manipulator::{Configuration, Manipulator};
+use crate::mode::{Contacts, Held};
+use crate::object_space::upright;
+use crate::tabletop::{Tabletop, TabletopState};
+use crate::tilt::tilt_rad;
+
+/// As far from the middle of the base the hand may be while the robot drives without anybody minding, metres.
+const FOLDED_M: f64 = 0.5;
+/// What a metre driven costs more for each metre that the hand is farther out, metres of arm travel.
+const OUT_COSTS: f64 = 4.0;
+/// Every way counts up to this much more by chance, so that where the best one is blocked others are tried.
+const CHANCE: f64 = 0.5;
+/// How many ways to carry an object are drawn.
+const DRAWS: usize = 16;
+/// Where the hand is when an object is carried: least and largest distance from the middle of the base, metres.
+const CARRIED_M: [f64; 2] = [0.35, 0.75];
+/// How much higher or lower than now an object is carried, metres.
+const CARRIED_RISE_M: f64 = 0.25;
+/// In how many parts a move of the arm is looked at for how far what is held leans.
+const LOOKS: u32 = 8;
+
+/// How arm and base go one after the other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Order<J> {
+    /// The base first.
+    BaseFirst,
+    /// The arm first.
+    ArmFirst,
+    /// The arm to this configuration, the base, the arm again.
+    Through(J),
+}
+
+/// The cheapest order found in which nothing is in the way of the robot and what it holds at either end of the drive.
+/// Costs are metres of travel, with a part left to chance.
+pub(super) fn order<M: Manipulator>(
+    m: &Tabletop<M>,
+    chain: &Chain<M>,
+    target: &Configuration<M::Joints>,
+    rng: &mut dyn Rng,
+) -> Order<M::Joints> {
+    let from = &chain.end;
+    let held = from.mode.held().copied();
+    let mut choices = vec![(Order::BaseFirst, from.robot.arm), (Order::ArmFirst, target.arm)];
+    choices.extend(m.settings().postures.iter().map(|posture| (Order::Through(*posture), *posture)));
+    if let Some(held) = &held {
+        choices.extend((0..DRAWS).filter_map(|_| carrying(m, from, held, rng)).map(|arm| (Order::Through(arm), arm)));
+    }
+    let costs = choices.into_iter().map(|(order, arm)| {
+        let cost = cost_m(m, from, target, &arm) * rng.random_range(1.0..1.0 + CHANCE);
+        (cost, order, arm)
+    });
+    let mut costs: Vec<_> = costs.collect();
+    costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut probe = Probe::new(m, from, from.mode.clone());
+    let mut is_fit = |arm: &M::Joints| {
+        [from.robot.base, target.base]
+            .into_iter()
+            .all(|base| probe.is_clear(&Configuration { base, arm: *arm }, &Contacts::default()))
+            && held.is_none_or(|held| {
+                stays_level(m, &held, &from.robot.arm, arm) && stays_level(m, &held, arm, &target.arm)
+            })
+    };
+    let found = costs.iter().find(|(_, _, arm)| is_fit(arm)).or(costs.first());
+    found.map_or(Order::BaseFirst, |(_, order, _)| *order)
+}
+
+/// What it costs to drive with the arm at `arm`: the arm's travel to there and from there on, and the drive, dearer with the
+/// hand out.
+fn cost_m<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    target: &Configuration<M::Joints>,
+    arm: &M::Joints,
+) -> f64 {
+    let robot = m.manipulator();
+    let at = |arm: &M::Joints| Configuration { base: from.robot.base, arm: *arm };
+    let reach_m = m.held_reach_m(&from.mode);
+    let moved_m = robot.travel_m(&from.robot, &at(arm), reach_m) + robot.travel_m(&at(arm), &at(&target.arm), reach_m);
+    let driven_m = m.robot().base().distance(&from.robot.base, &target.base);
+    moved_m + OUT_COSTS * driven_m * (out_m(m, &at(arm)) - FOLDED_M).max(0.0)
+}
+
+/// Horizontal distance of the hand from the middle of the base, metres.
+fn out_m<M: Manipulator>(m: &Tabletop<M>, q: &Configuration<M::Joints>) -> f64 {
+    let [x, y, _] = q.base;
+    let tool = m.manipulator().world_from_tool(q).translation.vector;
+    (tool.x - x).hypot(tool.y - y)
+}
+
+/// An arm configuration, drawn at random, that carries what is held upright and near the robot; `None` if the draw is out of
+/// reach.
+fn carrying<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    held: &Held,
+    rng: &mut dyn Rng,
+) -> Option<M::Joints> {
+    let here = from.object(held.object)?;
+    let [x, y, _] = from.robot.base;
+    let bearing = rng.random_range(-std::f64::consts::PI..std::f64::consts::PI);
+    let distance_m = rng.random_range(CARRIED_M[0]..CARRIED_M[1]);
+    let height_m = here.translation.z + rng.random_range(-CARRIED_RISE_M..CARRIED_RISE_M);
+    let yaw = rng.random_range(-std::f64::consts::PI..std::f64::consts::PI);
+    let turned = upright(Vector3::zeros(), yaw) * held.tool_from_object.inverse();
+    let tool = Vector3::new(x + distance_m * bearing.cos(), y + distance_m * bearing.sin(), height_m);
+    let at_tool = Isometry3::from_parts(tool.into(), UnitQuaternion::from(turned.rotation));
+    let robot = m.manipulator();
+    if !robot.may_reach(&from.robot.base, &at_tool) {
+        return None;
+    }
+    robot.inverse(&from.robot.base, &at_tool, rng)
+}
+
+/// Does what is held lean no farther than it may while the arm goes straight from `a` to `b`, as far as a few looks tell?
+fn stays_level<M: Manipulator>(m: &Tabletop<M>, held: &Held, a: &M::Joints, b: &M::Joints) -> bool {
+    let limit = m.tilt_limit_rad(held);
+    if limit >= std::f64::consts::PI {
+        return true;
+    }
+    let at = |arm: &M::Joints| Configuration { base: [0.0; 3], arm: *arm };
+    (1..LOOKS).all(|i| {
+        let q = m.robot().interpolate(&at(a), &at(b), f64::from(i) / f64::from(LOOKS));
+        tilt_rad(&(m.manipulator().world_from_tool(&q) * held.tool_from_object)) <= limit
+    })
+}
