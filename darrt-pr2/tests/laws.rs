@@ -4,6 +4,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test says no more than that it failed")]
 
+#[path = "laws/carried.rs"]
+mod carried;
 #[path = "laws/primitives.rs"]
 mod primitives;
 #[path = "laws/robot.rs"]

@@ -1,0 +1,34 @@
+//! What is carried leans no farther than its problem allows, and does lean where nothing forbids it.
+
+use darrt_core::budget::Cancel;
+use darrt_core::observe::Silent;
+use darrt_pr2::plan_file::PlanFile;
+use darrt_pr2::planning::{PlanRequest, plan};
+use darrt_pr2::problem_file::builtin;
+use nalgebra::{Isometry3, Vector3};
+
+/// The largest lean of the bowl at any waypoint of plans with a limit, degrees.
+fn most_lean_deg(limit_deg: f64, seeds: std::ops::Range<u64>) -> f64 {
+    let of_plan = |seed| {
+        let mut problem = builtin("bowl").unwrap();
+        problem.objects[0].max_tilt_deg = Some(limit_deg);
+        let result = plan(&PlanRequest::new(problem, seed), &Cancel::new(), &mut Silent).unwrap();
+        lean_deg(&result.plan.unwrap())
+    };
+    seeds.map(of_plan).fold(0.0, f64::max)
+}
+
+fn lean_deg(plan: &PlanFile) -> f64 {
+    let waypoints = plan.steps.iter().flat_map(|step| &step.waypoints);
+    let poses = waypoints.flat_map(|waypoint| waypoint.objects.values().copied().map(Isometry3::from));
+    poses.map(|pose| (pose.rotation * Vector3::z()).angle(&Vector3::z()).to_degrees()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_bowl_leans_as_far_as_it_may_and_no_farther() {
+    let free = most_lean_deg(180.0, 0..6);
+    for limit_deg in [20.0, 45.0] {
+        let bound = most_lean_deg(limit_deg, 0..6);
+        assert!(bound <= limit_deg && bound < free, "{bound} of {limit_deg}, {free} without a limit");
+    }
+}
