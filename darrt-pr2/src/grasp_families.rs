@@ -3,12 +3,12 @@
 use darrt_primitives::error::PrimitiveError;
 use darrt_primitives::grasp::footprint::Footprint;
 use darrt_primitives::grasp::overhead::{OverheadGrasps, WallGrasps, WallOptions};
-use darrt_primitives::grasp::rim::{RimGrasps, RimOptions};
+use darrt_primitives::grasp::rim::{Rim, RimGrasps, RimOptions};
 use darrt_primitives::grasp::side::SideGrasps;
 use darrt_primitives::grasp::{GraspFamily as Family, Grip};
 use darrt_primitives::manipulator::Hand;
 
-use crate::problem_file::{GraspFamily, Object, ShapeSpec};
+use crate::problem_file::{GraspFamily, Object, RimGrasp, ShapeSpec};
 
 /// A family of grasps that does not fit its object.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -56,8 +56,16 @@ fn flaw(family: GraspFamily, error: PrimitiveError) -> GraspFlaw {
     let source = match error {
         // The file has degrees.
         E::OutOfRange { name, value, low, high } if key == "tilts_deg" => {
-            let [value, low, high] = [value, low, high].map(|angle| (angle.to_degrees() * 1e9).round() / 1e9);
-            E::OutOfRange { name, value, low, high }
+            let [value, low, high] = [value, low, high].map(|angle| (angle.to_degrees() * 1e6).round() / 1e6 + 0.0);
+            match family {
+                "rim" => E::Malformed {
+                    what: "the tilt of the hand",
+                    detail: format!(
+                        "{value} degrees; only {low} to {high} are flush with the rim, else it turns in the hand"
+                    ),
+                },
+                _ => E::OutOfRange { name, value, low, high },
+            }
         }
         error => error,
     };
@@ -80,6 +88,8 @@ fn one(family: GraspFamily, object: &Object, hand: &dyn Hand) -> Result<Box<dyn 
         open_gap,
         tip_ahead: hand.tip_beyond_tool_m(closed_gap),
         approach,
+        pad_length: hand.pad_length_m(),
+        pad_width: 2.0 * hand.tip_half_width_m(),
     };
     let missing = |kind: &str| {
         let fit = match family {
@@ -90,17 +100,12 @@ fn one(family: GraspFamily, object: &Object, hand: &dyn Hand) -> Result<Box<dyn 
         PrimitiveError::Malformed { what: "the shape", detail: format!("{fit}, this is a {kind}") }
     };
     Ok(match (family, &object.shape) {
-        (GraspFamily::Rim, ShapeSpec::Cylinder { radius, height } | ShapeSpec::Bowl { radius, height, .. }) => {
-            let rim = &object.rim;
-            let options = RimOptions {
-                insertion: rim.insertion_m,
-                grid_tilts: radians(&rim.tilts_deg),
-                min_tilt: least(&rim.tilts_deg).to_radians(),
-                max_tilt: most(&rim.tilts_deg).to_radians(),
-                grid_azimuths: rim.azimuths,
-            };
-            let grip = grip(rim.opening_m, *height, rim.approach_m);
-            Box::new(RimGrasps::new(*radius, *height, grip, options)?)
+        (GraspFamily::Rim, shape) => {
+            let (rim, thickness) = rim_of(shape)?.ok_or_else(|| missing(shape.kind()))?;
+            let RimGrasp { insertion_m, azimuths, opening_m, approach_m, .. } = object.rim;
+            let tilts = radians(&object.rim_tilts_deg());
+            let options = RimOptions { insertion: insertion_m, tilts, grid_azimuths: azimuths };
+            Box::new(RimGrasps::new(rim, grip(opening_m, thickness, approach_m), options)?)
         }
         (GraspFamily::Overhead, ShapeSpec::Bowl { radius, height, wall }) => {
             let over = &object.overhead;
@@ -119,16 +124,33 @@ fn one(family: GraspFamily, object: &Object, hand: &dyn Hand) -> Result<Box<dyn 
             let over = &object.overhead;
             let (footprint, height, width) = outline(shape).ok_or_else(|| missing(shape.kind()))?;
             let grip = grip(over.opening_m, width, over.approach_m);
-            Box::new(OverheadGrasps::new(footprint, height, over.insertion_m, grip)?)
+            let grasps = OverheadGrasps::new(footprint, height, over.insertion_m, grip)?;
+            Box::new(grasps.with_round_ends(round_end(shape)))
         }
         (GraspFamily::Side, shape) => {
             let side = &object.side;
             let (footprint, height, width) = outline(shape).ok_or_else(|| missing(shape.kind()))?;
             let grip = grip(side.opening_m, width, side.approach_m);
-            Box::new(SideGrasps::new(footprint, height, side.insertion_m, 0.0, grip)?)
+            Box::new(SideGrasps::new(footprint, height, side.insertion_m, 0.0, grip)?.with_round_ends(round_end(shape)))
         }
-        (GraspFamily::Rim, shape) => return Err(missing(shape.kind())),
     })
+}
+
+/// The rim of a shape that has one, and its thickness. That of a bowl, taken from above and below, is the edge of its wall.
+fn rim_of(shape: &ShapeSpec) -> Result<Option<(Rim, f64)>, PrimitiveError> {
+    Ok(match *shape {
+        ShapeSpec::Cylinder { radius, height } => Some((Rim::level(radius, height, radius)?, height)),
+        ShapeSpec::Bowl { radius, height, wall } => Some((Rim::level(radius, height, wall)?, height)),
+        _ => None,
+    })
+}
+
+/// Length of the ends at which the sides are not upright, metres.
+fn round_end(shape: &ShapeSpec) -> f64 {
+    match *shape {
+        ShapeSpec::Capsule { radius, .. } => radius,
+        _ => 0.0,
+    }
 }
 
 /// Outline, height and least width of a shape that fingers can close around.
@@ -144,14 +166,6 @@ fn outline(shape: &ShapeSpec) -> Option<(Footprint, f64, f64)> {
 
 fn radians(degrees: &[f64]) -> Vec<f64> {
     degrees.iter().map(|d| d.to_radians()).collect()
-}
-
-fn least(values: &[f64]) -> f64 {
-    values.iter().copied().reduce(f64::min).unwrap_or(0.0)
-}
-
-fn most(values: &[f64]) -> f64 {
-    values.iter().copied().reduce(f64::max).unwrap_or(0.0)
 }
 
 #[cfg(test)]
@@ -177,6 +191,11 @@ mod tests {
         assert_eq!(
             said("plate1", |o| o.rim.insertion_m = 0.15),
             "`rim.insertion_m`: fingertip insertion must be below 0.14, found 0.15"
+        );
+        assert_eq!(
+            said("plate1", |o| o.rim.tilts_deg = Some(vec![0.0, 30.0])),
+            "`rim.tilts_deg`: the tilt of the hand cannot be used: 30 degrees; only -1 to 1 are flush with the rim, else it \
+             turns in the hand"
         );
         assert_eq!(
             said("bowl", |o| o.overhead.tilts_deg = vec![0.0, 70.0]),

@@ -11,7 +11,7 @@ mod plans;
 use darrt_pr2::model::URDF;
 use desk::Desk;
 
-const GOAL: &str = "on = \"side table\"\nat = [-2.165, -1.115]";
+const GOAL: &str = "on = \"side table\"\nat = [-2.14, -1.09]";
 const BASE: &str = "base = [-0.80, 0.0, 0.0]";
 const POSTURE: &str = "\nposture = \"side\"";
 const BOWL: &str =

@@ -10,7 +10,8 @@
 //! | [`overhead::OverheadGrasps`] | small thing, as a whole, from above | [`overhead`] |
 //! | [`side::SideGrasps`] | cup or block, as a whole, from the side | [`side`] |
 //!
-//! [`footprint::Footprint`] is the outline the last two close around.
+//! [`footprint::Footprint`] is the outline the last two close around. Whether a grasp can bear the weight is asked of
+//! [`mod@hold`].
 //!
 //! Frames: the object frame sits at the centre of the object's shape, z up along the axis of a round
 //! object. The tool frame has x along the direction the hand points and approaches, y along the
@@ -18,9 +19,11 @@
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
+use self::hold::PadContact;
 use crate::error::{PrimitiveError, positive, positive_below, within};
 
 pub mod footprint;
+pub mod hold;
 pub mod overhead;
 pub mod rim;
 pub mod side;
@@ -129,6 +132,12 @@ pub trait GraspFamily: Send + Sync {
     /// A fixed selection that covers the family evenly, in a fixed order.
     fn grid(&self) -> Vec<Grasp>;
 
+    /// How the closed pads lie on the object in a grasp of the family; `None` (the default): not known, and taken to hold
+    /// whatever the object weighs.
+    fn pads(&self, _grasp: &Grasp) -> Option<PadContact> {
+        None
+    }
+
     /// Does every grasp of the family need the rim to stick out over the edge of the support (all of kind
     /// [`GraspKind::Rim`])? Where it does not, none of them is drawn.
     fn needs_overhang(&self) -> bool {
@@ -151,12 +160,16 @@ pub struct Grip {
     pub tip_ahead: f64,
     /// Length of the straight approach (default 0.10).
     pub approach: f64,
+    /// Length of a pad from the fingertip back (default 0.036).
+    pub pad_length: f64,
+    /// Width of a pad (default 0.0226).
+    pub pad_width: f64,
 }
 
 impl Default for Grip {
-    /// Open gap 0.05, fingertips 0.018 ahead of the tool, approach 0.10: a common parallel gripper.
+    /// Open gap 0.05, fingertips 0.018 ahead of the tool, approach 0.10, pads 0.036 by 0.0226: a common parallel gripper.
     fn default() -> Self {
-        Self { open_gap: 0.05, tip_ahead: 0.018, approach: 0.10 }
+        Self { open_gap: 0.05, tip_ahead: 0.018, approach: 0.10, pad_length: 0.036, pad_width: 0.0226 }
     }
 }
 
@@ -168,9 +181,16 @@ impl Grip {
     fn check(&self, thickness: f64) -> Result<(), PrimitiveError> {
         positive("open finger gap", self.open_gap)?;
         positive("grasp approach", self.approach)?;
+        positive("pad length", self.pad_length)?;
+        positive("pad width", self.pad_width)?;
         within("fingertip ahead of the tool", self.tip_ahead, 0.0, f64::MAX)?;
         positive_below("held thickness", thickness, self.open_gap)?;
         Ok(())
+    }
+
+    /// Where the pads begin and end along the tool's x axis.
+    fn pads_along(&self) -> [f64; 2] {
+        [self.tip_ahead - self.pad_length, self.tip_ahead]
     }
 
     /// The grasp with the tool at `origin`, pointing along `pointing`, fingers opening along `opening`.
@@ -223,8 +243,11 @@ mod tests {
         let block = footprint::Footprint::Box { size_x: 0.05, size_y: 0.2 };
         let cup = footprint::Footprint::Disc { radius: 0.04 };
         let (rim, wall) = (rim::RimOptions::default(), overhead::WallOptions::default());
+        let (flat, sloping) = (rim::Rim::level(0.14, 0.02, 0.14), rim::Rim::sloping(0.14, 0.012, 0.25, 0.045, 0.005));
+        let askew = rim::RimOptions { tilts: vec![0.24, 0.26], ..rim.clone() };
         vec![
-            Box::new(rim::RimGrasps::new(0.14, 0.02, grip, rim).unwrap()),
+            Box::new(rim::RimGrasps::new(flat.unwrap(), grip, rim).unwrap()),
+            Box::new(rim::RimGrasps::new(sloping.unwrap(), grip, askew).unwrap()),
             Box::new(overhead::WallGrasps::new(0.075, 0.065, 0.005, grip, wall).unwrap()),
             Box::new(overhead::OverheadGrasps::new(block, 0.08, 0.03, wide).unwrap()),
             Box::new(overhead::OverheadGrasps::new(cup, 0.08, 0.03, wide).unwrap()),
@@ -309,10 +332,12 @@ mod tests {
         };
         assert_eq!(check(|_| (), 0.02), Ok(()));
         assert_eq!(check(|g| g.tip_ahead = 0.0, 0.02), Ok(()), "the tool may end with the fingertips");
-        let refused: [(Change, f64, &str); 6] = [
+        let refused: [(Change, f64, &str); 8] = [
             (|g| g.open_gap = 0.0, 0.02, "open finger gap must be above 0, found 0"),
             (|g| g.open_gap = f64::INFINITY, 0.02, "open finger gap must be finite, found inf"),
             (|g| g.approach = -0.1, 0.02, "grasp approach must be above 0, found -0.1"),
+            (|g| g.pad_length = 0.0, 0.02, "pad length must be above 0, found 0"),
+            (|g| g.pad_width = f64::NAN, 0.02, "pad width must be finite, found NaN"),
             (|g| g.tip_ahead = f64::NAN, 0.02, "fingertip ahead of the tool must be finite, found NaN"),
             (|_| (), 0.0, "held thickness must be above 0, found 0"),
             (|_| (), 0.05, "held thickness must be below 0.05, found 0.05"),

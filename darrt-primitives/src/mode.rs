@@ -29,6 +29,8 @@ pub struct Held {
     pub object: ObjectId,
     /// The grasp: rigid for as long as it is held.
     pub tool_from_object: Isometry3<f64>,
+    /// How far the object's z axis may lean from the vertical before the grasp yields, radians; pi: never.
+    pub max_tilt_rad: f64,
 }
 
 /// The mode. Legal transitions are the methods; each returns `None` when it is not legal from here.

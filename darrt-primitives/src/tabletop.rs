@@ -13,7 +13,8 @@ use nalgebra::{Isometry3, Point2, Vector3};
 use smallvec::SmallVec;
 
 use crate::arm_space::ArmSpace;
-use crate::grasp::GraspFamily;
+use crate::grasp::hold::{Hold, Load, NoHold, hold};
+use crate::grasp::{Grasp, GraspFamily};
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Held, Mode, SurfaceId};
 use crate::object_space::ObjectSpace;
@@ -256,10 +257,25 @@ impl<M: Manipulator> Tabletop<M> {
         held.tool_from_object.translation.vector.norm() + self.movable(held.object).map_or(0.0, |o| o.reach_m)
     }
 
-    /// How far the z axis of what the hand holds may lean from the vertical while it is carried, radians in `[0, pi]`; `pi`
-    /// for an object that is not of this domain.
+    /// How far the z axis of what the hand holds may lean from the vertical while it is carried, radians in `[0, pi]`: as far
+    /// as the object may, and as the grasp holds.
     pub fn tilt_limit_rad(&self, held: &Held) -> f64 {
-        self.movable(held.object).map_or(std::f64::consts::PI, |object| object.max_tilt_rad)
+        self.movable(held.object).map_or(std::f64::consts::PI, |object| object.max_tilt_rad).min(held.max_tilt_rad)
+    }
+
+    /// Does `grasp`, of this family of the object's, hold it?
+    ///
+    /// # Errors
+    /// [`NoHold`] with what fails. A family that does not know where its pads lie ([`GraspFamily::pads`]) always holds.
+    pub fn hold(&self, movable: &Movable, family: &dyn GraspFamily, grasp: &Grasp) -> Result<Hold, NoHold> {
+        let Some(contact) = family.pads(grasp) else { return Ok(Hold { max_tilt_rad: std::f64::consts::PI }) };
+        let load = Load {
+            mass_kg: movable.mass_kg,
+            friction: movable.friction.fingers,
+            grip_force_n: self.manipulator.hand().grip_force_n(),
+            payload_kg: self.manipulator.payload_kg(),
+        };
+        hold(&grasp.object_from_tool.inverse(), &contact, &load)
     }
 
     fn tool_point(&self, q: &Configuration<M::Joints>) -> Vector3<f64> {

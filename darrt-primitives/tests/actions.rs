@@ -10,12 +10,13 @@ use darrt_primitives::action::transfer::{transfer, transfer_by_base};
 use darrt_primitives::action::{label, pick::pick, place::place, push::push};
 use darrt_primitives::grasp::footprint::Footprint;
 use darrt_primitives::grasp::overhead::{OverheadGrasps, WallGrasps, WallOptions};
-use darrt_primitives::grasp::rim::{RimGrasps, RimOptions};
+use darrt_primitives::grasp::rim::{Rim, RimGrasps, RimOptions};
 use darrt_primitives::grasp::{GraspFamily, Grip};
 use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::mode::{Contacts, SurfaceId, TouchReason};
 use darrt_primitives::object_space::upright;
 use darrt_primitives::push::edge_stop::RimReach;
+use darrt_primitives::tabletop::Movable;
 use darrt_primitives::testing::gantry::{Gantry, MAX_GAP_M, TIP_BEYOND_TOOL_M, motion};
 use darrt_primitives::testing::table::{Table, TableState, altered_table, honest_table, object, start};
 use darrt_primitives::wish::asks_to_push;
@@ -301,7 +302,7 @@ fn grasped_by(grasps: impl GraspFamily + 'static) -> Table {
 }
 
 fn grip(open_gap: f64) -> Grip {
-    Grip { open_gap, tip_ahead: TIP_BEYOND_TOOL_M, approach: 0.1 }
+    Grip { open_gap, tip_ahead: TIP_BEYOND_TOOL_M, approach: 0.1, ..Grip::default() }
 }
 
 #[test]
@@ -315,8 +316,8 @@ fn the_fingers_open_no_farther_than_they_can() {
 
 #[test]
 fn a_rim_is_gripped_only_where_it_sticks_out_over_the_edge() {
-    let options = RimOptions { insertion: 0.02, max_tilt: 0.0, grid_tilts: vec![0.0], ..RimOptions::default() };
-    let m = grasped_by(RimGrasps::new(0.04, 0.08, grip(0.095), options).unwrap());
+    let options = RimOptions { insertion: 0.02, ..RimOptions::default() };
+    let m = grasped_by(RimGrasps::new(Rim::level(0.04, 0.08, 0.04).unwrap(), grip(0.095), options).unwrap());
     let mut from = start(&m);
     let picks = |from: &TableState| -> Vec<_> {
         (0..16).map(|seed| pick(&m, from, object(0), &mut stream(seed, 0, 0, Purpose::Extend))).collect()
@@ -332,6 +333,22 @@ fn a_rim_is_gripped_only_where_it_sticks_out_over_the_edge() {
         // The fingertips, 0.02 m from the axis, are 0.005 m beside the table: 0.02 cos - 0.01 >= 0.005.
         assert!((tool.rotation * Vector3::x()).x >= 0.75 - 1e-6, "{tool}");
     }
+}
+
+#[test]
+fn what_no_grasp_holds_is_not_picked() {
+    let table = |mass_kg, fingers| {
+        let change = |objects: &mut [(_, Movable)], _: &mut _| {
+            (objects[0].1.mass_kg, objects[0].1.friction.fingers) = (mass_kg, fingers);
+        };
+        altered_table(Gantry::new().unwrap(), change).unwrap()
+    };
+    let picks = |m: &Table| -> Vec<_> {
+        (0..16).map(|seed| pick(m, &start(m), object(0), &mut stream(seed, 0, 0, Purpose::Extend))).collect()
+    };
+    // The gantry grips and carries without limit.
+    assert!(picks(&table(50.0, 0.5)).iter().any(Result::is_ok));
+    assert!(picks(&table(0.3, 0.0)).iter().all(|end| matches!(end, Err(Infeasible::NoHold))));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use darrt_core::state::ObjectId;
 use darrt_primitives::action::approach::{NO_WAY_M, to_grasp_m, to_push_m};
 use darrt_primitives::action::{label, pick::pick, push::push};
 use darrt_primitives::grasp::Grip;
-use darrt_primitives::grasp::rim::{RimGrasps, RimOptions};
+use darrt_primitives::grasp::rim::{Rim, RimGrasps, RimOptions};
 use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::push::edge_stop::EdgeRule;
 use darrt_primitives::testing::gantry::{Gantry, TIP_BEYOND_TOOL_M};
@@ -90,8 +90,13 @@ fn to_a_grasp_it_is_no_more_than_the_way_to_any() {
 
 #[test]
 fn there_is_no_way_to_what_can_be_neither_pushed_nor_grasped() {
-    let grip = Grip { open_gap: 0.09, tip_ahead: TIP_BEYOND_TOOL_M, approach: 0.1 };
-    let rim = RimGrasps::new(0.04, 0.02, grip, RimOptions { insertion: 0.02, ..RimOptions::default() }).unwrap();
+    let grip = Grip { open_gap: 0.09, tip_ahead: TIP_BEYOND_TOOL_M, approach: 0.1, ..Grip::default() };
+    let rim = RimGrasps::new(
+        Rim::level(0.04, 0.02, 0.04).unwrap(),
+        grip,
+        RimOptions { insertion: 0.02, ..RimOptions::default() },
+    )
+    .unwrap();
     let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].1.grasps = vec![Box::new(rim)]).unwrap();
     let mut here = start(&m);
     assert_eq!(to_grasp_m(&m, &here, object(0)), NO_WAY_M, "no rim sticks out in the middle of the table");

@@ -124,7 +124,7 @@ impl StateMachineTest for Real {
             Step::Disengage => mode.disengaged(),
             Step::Attach { object, grasp, gap_m } => {
                 let tool_from_object = Isometry3::translation(grasp, 0.0, 0.0);
-                mode.attached(Held { object: ObjectId::new(object), tool_from_object }, gap_m)
+                mode.attached(Held { object: ObjectId::new(object), tool_from_object, max_tilt_rad: 1.0 }, gap_m)
             }
             Step::Release { surface, gap_m } => mode.released_on(SurfaceId::new(surface), gap_m),
         };
@@ -137,7 +137,11 @@ impl StateMachineTest for Real {
         for (i, surface) in model.rests_on.iter().enumerate() {
             assert_eq!(mode.support_of(ObjectId::new(i)), surface.map(SurfaceId::new));
         }
-        let held = model.held.map(|(i, tool_from_object)| Held { object: ObjectId::new(i), tool_from_object });
+        let held = model.held.map(|(i, tool_from_object)| Held {
+            object: ObjectId::new(i),
+            tool_from_object,
+            max_tilt_rad: 1.0,
+        });
         assert_eq!(mode.held().copied(), held);
         assert_eq!(mode.engaged(), model.engaged.map(ObjectId::new));
         assert_eq!(mode.gap_m(), model.gap_m);

@@ -19,12 +19,14 @@ pub enum GraspFamily {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RimGrasp {
-    /// Downward pitches of the hand in degrees, -90 to 90; at 0 the hand is level, above it the wrist is higher than
-    /// the rim.
-    pub tilts_deg: Vec<f64>,
+    /// Downward pitches of the hand in degrees, above 0 where the wrist is higher than the rim; by default the slope of the
+    /// rim, 0 for a flat plate. None may be more than 1 degree from it: between pads that are not flush with the rim the
+    /// object turns as soon as it is lifted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tilts_deg: Option<Vec<f64>>,
     /// How many directions around the object's axis, evenly spaced.
     pub azimuths: u32,
-    /// How far the fingertips reach inside the rim (m).
+    /// How far the fingertips reach inside the rim, along it (m). What of the pads lies on the object bears its weight.
     pub insertion_m: f64,
     /// Gap between the open fingers while approaching (m).
     pub opening_m: f64,
@@ -36,14 +38,7 @@ pub struct RimGrasp {
 
 impl Default for RimGrasp {
     fn default() -> Self {
-        Self {
-            tilts_deg: vec![0.0, 30.0, 45.0],
-            azimuths: 24,
-            insertion_m: 0.03,
-            opening_m: 0.04,
-            approach_m: 0.10,
-            lift_m: 0.12,
-        }
+        Self { tilts_deg: None, azimuths: 24, insertion_m: 0.04, opening_m: 0.06, approach_m: 0.10, lift_m: 0.12 }
     }
 }
 

@@ -111,11 +111,17 @@ impl Object {
         self.max_tilt_deg.unwrap_or(if self.shape.may_be_full() { UPRIGHT_TILT_DEG } else { 180.0 })
     }
 
+    /// Pitches of the hand at the rim, degrees.
+    pub fn rim_tilts_deg(&self) -> Vec<f64> {
+        self.rim.tilts_deg.clone().unwrap_or_else(|| vec![self.shape.rim_slope_deg()])
+    }
+
     /// Fills in what depends on other keys.
     pub(crate) fn normalise(&mut self) {
         self.symmetry = Some(self.symmetry());
         self.pushable = Some(self.pushable());
         self.max_tilt_deg = Some(self.max_tilt_deg());
+        self.rim.tilts_deg = Some(self.rim_tilts_deg());
     }
 }
 

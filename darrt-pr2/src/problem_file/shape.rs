@@ -85,6 +85,11 @@ impl ShapeSpec {
         }
     }
 
+    /// By how much the rim rises outward, degrees; 0 for a shape that has no such rim.
+    pub const fn rim_slope_deg(&self) -> f64 {
+        0.0
+    }
+
     /// May something be in it that must not be spilt: is it a bowl, or round and taller than its radius, as a mug or a
     /// bottle is?
     pub const fn may_be_full(&self) -> bool {

@@ -150,7 +150,7 @@ fn place_is_not_useful_for_a_target_that_is_met() {
     let (plate, mut here) = (ObjectId::new(0), problem.start().clone());
     let tool = m.manipulator().world_from_tool(&here.robot);
     // In the hand, but still where it stood.
-    let held = Held { object: plate, tool_from_object: tool.inverse() * here.objects[0] };
+    let held = Held { object: plate, tool_from_object: tool.inverse() * here.objects[0], max_tilt_rad: 1.0 };
     here.mode = here.mode.attached(held, 0.02).unwrap();
     let to = PartialState::of_state(m, &here);
     assert!(!Place.useful(m, &here, &to));

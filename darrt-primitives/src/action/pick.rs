@@ -11,6 +11,7 @@ use super::retreat::retreat;
 use super::stance::{Probe, Refused, Wanted, at_end, stance};
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
+use crate::grasp::hold::Hold;
 use crate::grasp::rim::{rim_is_graspable, rim_overhangs};
 use crate::grasp::{Grasp, GraspKind};
 use crate::manipulator::{Configuration, Manipulator};
@@ -30,7 +31,7 @@ struct Way<J> {
 ///
 /// # Errors
 /// [`Infeasible::NoGrasp`] if no grasp fits where the object stands (a plate whose rim does not overhang),
-/// [`Infeasible::Blocked`] or [`Infeasible::Unreachable`] if the arm comes to none of those tried.
+/// [`Infeasible::NoHold`] if none of those that fit holds its weight, [`Infeasible::Blocked`] or [`Infeasible::Unreachable`] if the arm comes to none of those tried.
 pub fn pick<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
@@ -58,6 +59,10 @@ pub fn pick<M: Manipulator>(
         if !fits(m, from, object, movable, pose, &grasp) {
             continue;
         }
+        let Ok(hold) = m.hold(movable, &**family, &grasp) else {
+            why = Infeasible::NoHold;
+            continue;
+        };
         let at_grasp = grasp.world_from_tool(pose);
         let tries = m.settings().base_tries.div_ceil(2);
         let wanted = Wanted { world_from_tool: &at_grasp, tries };
@@ -69,7 +74,7 @@ pub fn pick<M: Manipulator>(
             continue;
         }
         fitted += 1;
-        let picking = Picking { object, pose, grasp: &grasp, at_grasp: &at_grasp };
+        let picking = Picking { object, pose, grasp: &grasp, hold, at_grasp: &at_grasp };
         match stance(m, from, &wanted, rng, |q| way_of(m, q, &picking, movable, &mut probe)) {
             Ok(way) => return assemble(m, chain, &picking, &way, rng),
             Err(refused) => why = refused,
@@ -86,7 +91,15 @@ struct Picking<'a> {
     object: ObjectId,
     pose: &'a Isometry3<f64>,
     grasp: &'a Grasp,
+    hold: Hold,
     at_grasp: &'a Isometry3<f64>,
+}
+
+impl Picking<'_> {
+    /// The object in the hand.
+    fn held(&self, tool_from_object: Isometry3<f64>) -> Held {
+        Held { object: self.object, tool_from_object, max_tilt_rad: self.hold.max_tilt_rad }
+    }
 }
 
 /// How many grasps are drawn for one that is tried: most rim grasps meet the table.
@@ -157,8 +170,7 @@ fn check_lifted<M: Manipulator>(
     probe: &Probe<'_, M>,
 ) -> Result<(), Refused<M>> {
     let beside = probe.state().mode.clone();
-    let tool_from_object = picking.at_grasp.inverse() * picking.pose;
-    let held = Held { object: picking.object, tool_from_object };
+    let held = picking.held(picking.at_grasp.inverse() * picking.pose);
     let mode = beside.attached(held, picking.grasp.closed_gap_m).ok_or(Refused::Unreachable)?;
     Probe::new(m, probe.state(), mode).check(lifted, &Contacts::default())
 }
@@ -175,8 +187,7 @@ fn assemble<M: Manipulator>(
     approach(m, &mut chain, object, way.base, &way.in_, grasp.open_gap_m, straddling(object, grasp), rng)?;
 
     // The grasp as the hand really stands, so that the object does not jump by a rounding error.
-    let tool_from_object = m.manipulator().world_from_tool(&chain.end.robot).inverse() * pose;
-    let held = Held { object, tool_from_object };
+    let held = picking.held(m.manipulator().world_from_tool(&chain.end.robot).inverse() * pose);
     let mode = chain.end.mode.attached(held, grasp.closed_gap_m).ok_or(Infeasible::NoGrasp)?;
     let waypoints: Vec<_> =
         way.up.iter().map(|arm| Waypoint { robot: Configuration { base: way.base, arm: *arm }, pushed: 0.0 }).collect();

@@ -42,6 +42,15 @@ impl Footprint {
         }
     }
 
+    /// Size across the fingers that close along the azimuth `opening`, metres; `None` for a disc, on which they lie along a
+    /// line.
+    pub(super) fn across(&self, opening: f64) -> Option<f64> {
+        match *self {
+            Self::Disc { .. } => None,
+            Self::Box { size_x, size_y } => Some(if opening.cos().abs() > 0.5 { size_y } else { size_x }),
+        }
+    }
+
     /// Checks the sizes.
     pub(super) fn check(&self) -> Result<(), PrimitiveError> {
         match *self {

@@ -6,9 +6,10 @@ use nalgebra::Vector3;
 use rand::RngExt as _;
 
 use super::footprint::{Footprint, GRID_OPENINGS, Opening, fitting_openings, sample_opening};
+use super::hold::{LINE_WIDTH_M, PadContact};
 use super::{Grasp, GraspFamily, GraspKind, Grip, at_least_one, azimuths, radial_and_tangent};
 use crate::error::{PrimitiveError, positive, positive_below, within};
-use crate::push::{Friction, GRAVITY};
+use crate::push::limit_surface::PressureConstant;
 
 /// The free parameters of a family of wall grasps. Lengths in metres.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,6 +99,18 @@ impl WallGrasps {
 }
 
 impl GraspFamily for WallGrasps {
+    /// The outer pad lies along a line, the inner one, in the hollow, on its two edges: across, only the inner pressure can
+    /// shift, and both pads resist turning at least as a line does.
+    fn pads(&self, grasp: &Grasp) -> Option<PadContact> {
+        let GraspKind::Wall { lean, .. } = grasp.kind else { return None };
+        let [back, tip] = self.grip.pads_along();
+        let from = back.max(tip - self.options.depth / lean.cos());
+        let half_width = self.grip.pad_width / 4.0;
+        let flat = PadContact::flat([from, -half_width], [tip, half_width]);
+        let [length, _] = flat.size_m;
+        Some(PadContact { spin_arm_m: PressureConstant::line(length).map_or(0.0, PressureConstant::meters), ..flat })
+    }
+
     fn sample(&self, rng: &mut dyn rand::Rng) -> Grasp {
         let azimuth = rng.random_range(0.0..TAU);
         let lean = rng.random_range(-self.options.max_lean..=self.options.max_lean);
@@ -123,6 +136,9 @@ impl GraspFamily for WallGrasps {
 pub struct OverheadGrasps {
     footprint: Footprint,
     tool_height: f64,
+    depth: f64,
+    /// Between which depths below the top the sides are upright.
+    upright: [f64; 2],
     grip: Grip,
     openings: Vec<Opening>,
 }
@@ -138,7 +154,17 @@ impl OverheadGrasps {
         positive("fingertip depth", depth)?;
         within("fingertip depth", depth, 0.0, height)?;
         let openings = fitting_openings(&footprint, &grip, GRID_OPENINGS)?;
-        Ok(Self { footprint, tool_height: 0.5 * height - depth + grip.tip_ahead, grip, openings })
+        let tool_height = 0.5 * height - depth + grip.tip_ahead;
+        Ok(Self { footprint, tool_height, depth, upright: [0.0, height], grip, openings })
+    }
+
+    /// The same for an object whose sides are upright only farther than `end` metres from its top and bottom, as those of a
+    /// capsule.
+    #[must_use]
+    pub fn with_round_ends(mut self, end: f64) -> Self {
+        let [top, bottom] = self.upright;
+        self.upright = [top + end, bottom - end];
+        self
     }
 
     /// The grasp with the tool's y axis at the azimuth of `opening`, or turned half a turn.
@@ -152,6 +178,14 @@ impl OverheadGrasps {
 }
 
 impl GraspFamily for OverheadGrasps {
+    fn pads(&self, grasp: &Grasp) -> Option<PadContact> {
+        let GraspKind::Overhead { azimuth } = grasp.kind else { return None };
+        let [back, tip] = self.grip.pads_along();
+        let [from, to] = self.upright.map(|depth| tip - (self.depth - depth));
+        let half = self.footprint.across(azimuth).map_or(LINE_WIDTH_M, |size| size.min(self.grip.pad_width)) / 2.0;
+        Some(PadContact::flat([from.max(back), -half], [to.min(tip), half]))
+    }
+
     fn sample(&self, rng: &mut dyn rand::Rng) -> Grasp {
         let opening = sample_opening(&self.footprint, &self.openings, rng);
         self.grasp(opening, rng.random_bool(0.5))
@@ -164,15 +198,6 @@ impl GraspFamily for OverheadGrasps {
     fn grid(&self) -> Vec<Grasp> {
         self.openings.iter().flat_map(|opening| [false, true].map(|turned| self.grasp(*opening, turned))).collect()
     }
-}
-
-/// Least grip force that holds `mass` kilograms between two pads against gravity, N: m g / (2 mu).
-///
-/// # Errors
-/// When `mass` or the friction coefficient is not positive.
-pub fn least_grip_force(mass: f64, friction: Friction) -> Result<f64, PrimitiveError> {
-    let mu = positive("pad friction", friction.coefficient())?;
-    Ok(positive("mass", mass)? * GRAVITY / (2.0 * mu))
 }
 
 #[cfg(test)]

@@ -1,135 +1,190 @@
 //! Grasps of a plate by its rim, where it sticks out over a table edge.
 //!
 //! A plate that lies flat on a table cannot be grasped: one finger would have to be inside the table.
-//! Over an edge one finger goes below the rim and one above, the hand pointing at the plate's centre.
-//! A tilt (wrist higher than the rim) lets the plate be set down where a level hand would collide.
+//! Over an edge one finger goes below the rim and one above, the hand pointing at the plate's centre, tilted as the rim is:
+//! pads that are not flush with it turn the plate as soon as the table lets go of it.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_4, TAU};
 
 use darrt_geom::SupportSurface;
 use nalgebra::{Point2, Vector2, Vector3};
 use rand::RngExt as _;
 
+use super::hold::{FLUSH_RAD, PadContact};
 use super::{Grasp, GraspFamily, GraspKind, Grip, at_least_one, azimuths, radial_and_tangent};
 use crate::error::{PrimitiveError, positive, positive_below, within};
-use crate::push::{Friction, GRAVITY};
 
 /// Slack for plates that stand exactly at the limit, metres.
 const ROUNDING: f64 = 1e-9;
 
+/// The part of a plate that the pads close on: a ring of even thickness that rises outward. Its outer end is square to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rim {
+    /// Radius of the plate, metres.
+    radius: f64,
+    /// Height of the uppermost point above the plate's centre, metres.
+    top: f64,
+    /// Rise outward, radians.
+    slope: f64,
+    /// From its outer end inward along its faces, metres.
+    width: f64,
+    /// Metres.
+    thickness: f64,
+}
+
+impl Rim {
+    /// The rim of a flat disc of `radius` and `height` that reaches `width` inward, metres.
+    ///
+    /// # Errors
+    /// When a length is not positive, or `width` is above the radius.
+    pub fn level(radius: f64, height: f64, width: f64) -> Result<Self, PrimitiveError> {
+        let height = positive("plate thickness", height)?;
+        Self::sloping(radius, height / 2.0, 0.0, width, height)
+    }
+
+    /// A rim that rises outward by `slope` radians in `[0, pi/4]`, the uppermost point of the plate being `top` above its
+    /// centre; metres. Its lower edge is farthest from the centre, at `radius`.
+    ///
+    /// # Errors
+    /// When a length is not positive, `slope` is out of range, or `width` above the radius.
+    pub fn sloping(radius: f64, top: f64, slope: f64, width: f64, thickness: f64) -> Result<Self, PrimitiveError> {
+        let radius = positive("plate radius", radius)?;
+        positive("rim width", width)?;
+        Ok(Self {
+            radius,
+            top: positive("plate top", top)?,
+            slope: within("rim slope", slope, 0.0, FRAC_PI_4)?,
+            width: within("rim width", width, 0.0, radius)?,
+            thickness: positive("rim thickness", thickness)?,
+        })
+    }
+
+    /// The middle of the outer end, as seen along the azimuth `outward`.
+    fn outer_end(&self, outward: &Vector3<f64>) -> Vector3<f64> {
+        let (sin, cos) = self.slope.sin_cos();
+        let half = self.thickness / 2.0;
+        (self.radius - half * sin) * outward + (self.top - half * cos) * Vector3::z()
+    }
+}
+
 /// The free parameters of a family of rim grasps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RimOptions {
-    /// How far the fingertips reach in from the rim, metres (default 0.030).
+    /// How far the fingertips reach in from the rim, along it, metres (default 0.040: pads of 0.036 lie on it whole).
     pub insertion: f64,
-    /// Smallest tilt that is sampled, radians (default 0).
-    pub min_tilt: f64,
-    /// Largest tilt that is sampled, radians (default 45 degrees).
-    pub max_tilt: f64,
-    /// Tilts of the grid, radians, each within the sampled range (default 0, 30, 45 degrees).
-    pub grid_tilts: Vec<f64>,
+    /// Tilts of the hand, radians, positive when the wrist is higher than the rim; each within [`FLUSH_RAD`] of the slope of
+    /// the rim, which is the only one by default (when empty). Samples are drawn from the least to the largest.
+    pub tilts: Vec<f64>,
     /// Azimuths of the grid, evenly over the full turn (default 24).
     pub grid_azimuths: u32,
 }
 
 impl Default for RimOptions {
-    /// Insertion 0.030; tilt 0 to 45 degrees; grid of 24 azimuths and tilts 0, 30, 45 degrees.
+    /// Insertion 0.040; flush; grid of 24 azimuths.
     fn default() -> Self {
-        let tilts = [0.0_f64, 30.0, 45.0].map(f64::to_radians);
-        Self {
-            insertion: 0.030,
-            min_tilt: 0.0,
-            max_tilt: 45.0_f64.to_radians(),
-            grid_tilts: tilts.to_vec(),
-            grid_azimuths: 24,
-        }
+        Self { insertion: 0.040, tilts: Vec::new(), grid_azimuths: 24 }
     }
 }
 
-/// Rim grasps of one plate: any azimuth, a range of tilts, fingers either way round.
+/// Rim grasps of one plate: any azimuth, fingers either way round.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RimGrasps {
-    radius: f64,
-    height: f64,
+    rim: Rim,
     grip: Grip,
     options: RimOptions,
 }
 
 impl RimGrasps {
-    /// Grasps of a plate, a cylinder of `radius` and `height` metres.
+    /// Grasps of a plate by its `rim`.
     ///
     /// # Errors
-    /// When a length is not positive, the plate is thicker than the open gap, the insertion not below
-    /// the radius, a tilt outside its range (at most 90 degrees either way), or the grid empty.
-    pub fn new(radius: f64, height: f64, grip: Grip, options: RimOptions) -> Result<Self, PrimitiveError> {
-        let radius = positive("plate radius", radius)?;
-        grip.check(height)?;
-        positive_below("fingertip insertion", options.insertion, radius)?;
-        let max = within("largest tilt", options.max_tilt, -FRAC_PI_2, FRAC_PI_2)?;
-        let min = within("smallest tilt", options.min_tilt, -FRAC_PI_2, max)?;
+    /// When the rim is thicker than the open gap, the insertion not below the radius, a tilt more than [`FLUSH_RAD`] from
+    /// the slope, or the grid empty.
+    pub fn new(rim: Rim, grip: Grip, mut options: RimOptions) -> Result<Self, PrimitiveError> {
+        grip.check(rim.thickness)?;
+        positive_below("fingertip insertion", options.insertion, rim.radius)?;
         at_least_one("azimuth grid", options.grid_azimuths)?;
-        if options.grid_tilts.is_empty() {
-            return Err(PrimitiveError::Empty { name: "tilt grid" });
+        for tilt in &options.tilts {
+            within("tilt of the hand", *tilt, rim.slope - FLUSH_RAD - ROUNDING, rim.slope + FLUSH_RAD + ROUNDING)?;
         }
-        for tilt in &options.grid_tilts {
-            within("grid tilt", *tilt, min, max)?;
+        if options.tilts.is_empty() {
+            options.tilts.push(rim.slope);
         }
-        Ok(Self { radius, height, grip, options })
+        Ok(Self { rim, grip, options })
     }
 
     /// The grasp at `azimuth` with `tilt`, radians.
     ///
-    /// The tool x axis points at the plate's axis and down by the tilt. A level hand has its tool origin in the plate's
-    /// middle plane, `insertion - tip_ahead` inside the rim. Parallel pads close on a tilted plate only until the end of
-    /// one and the rim of the plate on the other touch: a tilted hand closes less far and stands between these contacts.
+    /// The tool x axis points at the plate's axis and down by the tilt. A flush hand has its tool origin in the middle plane
+    /// of the rim, `insertion - tip_ahead` inside its end. Parallel pads close on a rim that is askew only until the end of
+    /// one and the end of the rim on the other touch: such a hand closes less far and stands between these contacts.
     pub fn grasp(&self, azimuth: f64, tilt: f64, flipped: bool) -> Grasp {
         let (outward, _) = radial_and_tangent(azimuth);
-        let (sin, cos) = tilt.sin_cos();
-        let pointing = -cos * outward - sin * Vector3::z();
-        let above = cos * Vector3::z() - sin * outward;
-        let [upper, lower] = self.pad_distances(tilt);
-        let rim = (self.radius - self.options.insertion + self.grip.tip_ahead) * outward;
-        let origin = rim + (upper - lower) / 2.0 * above;
+        let directions = |tilt: f64| {
+            let (sin, cos) = tilt.sin_cos();
+            (-cos * outward - sin * Vector3::z(), cos * Vector3::z() - sin * outward)
+        };
+        let (inward, _) = directions(self.rim.slope);
+        let (pointing, above) = directions(tilt);
+        let [upper, lower] = self.pad_distances(tilt - self.rim.slope);
+        let inside = self.rim.outer_end(&outward) + (self.options.insertion - self.grip.tip_ahead) * inward;
+        let origin = inside + (upper - lower) / 2.0 * above;
         let sign = if flipped { 1.0 } else { -1.0 };
         let kind = GraspKind::Rim { azimuth, tilt, flipped };
         let grasp = self.grip.grasp(origin, pointing, sign * above, upper + lower, kind);
-        Grasp { open_gap_m: upper + lower + (self.grip.open_gap - self.height), ..grasp }
+        Grasp { open_gap_m: upper + lower + (self.grip.open_gap - self.rim.thickness), ..grasp }
     }
 
-    /// Distances of the pads, above and below, from the line along the hand through the middle of the plate, when they
-    /// touch it; metres. The pads reach `tip_ahead` beyond the tool and farther back than the rim.
-    fn pad_distances(&self, tilt: f64) -> [f64; 2] {
-        let half = self.height / 2.0;
-        // Steeper than this the pads would no longer meet the faces but the rim.
-        let (sin, cos) = (tilt.abs().sin(), tilt.cos().max(0.2));
+    /// Distances of the pads, above and below, from the line along the hand through the middle of the rim, when they touch
+    /// it and the hand is tilted against it by `askew`; metres. The pads reach `tip_ahead` beyond the tool and farther back
+    /// than the rim.
+    fn pad_distances(&self, askew: f64) -> [f64; 2] {
+        let half = self.rim.thickness / 2.0;
+        // Steeper than this the pads would no longer meet the faces but the end of the rim.
+        let (sin, cos) = (askew.abs().sin(), askew.cos().max(0.2));
         let at_tip = self.grip.tip_ahead * sin / cos + half / cos;
         let at_rim = (self.options.insertion - self.grip.tip_ahead).max(0.0) * sin + half * cos;
-        if tilt >= 0.0 { [at_tip, at_rim] } else { [at_rim, at_tip] }
+        if askew >= 0.0 { [at_tip, at_rim] } else { [at_rim, at_tip] }
+    }
+
+    /// The tilts of the options, least and largest.
+    fn tilt_range(&self) -> [f64; 2] {
+        let tilts = &self.options.tilts;
+        tilts.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], tilt| [low.min(*tilt), high.max(*tilt)])
     }
 }
 
 impl GraspFamily for RimGrasps {
+    fn pads(&self, grasp: &Grasp) -> Option<PadContact> {
+        let GraspKind::Rim { tilt, .. } = grasp.kind else { return None };
+        let [back, tip] = self.grip.pads_along();
+        let end = tip - self.options.insertion;
+        let half = self.grip.pad_width / 2.0;
+        let flat = PadContact::flat([back.max(end), -half], [tip.min(end + self.rim.width), half]);
+        Some(PadContact { askew_rad: (tilt - self.rim.slope).abs(), ..flat })
+    }
+
     fn needs_overhang(&self) -> bool {
         true
     }
 
     fn tool_reach_m(&self) -> f64 {
-        let Self { radius, height, grip, options } = self;
-        let steepest = options.min_tilt.abs().max(options.max_tilt.abs());
-        // Neither pad is farther from the line along the hand than this, and the tool is half as far at most.
-        let [at_tip, _] = self.pad_distances(steepest);
-        let at_rim = (options.insertion - grip.tip_ahead).max(0.0).hypot(height / 2.0);
-        radius - options.insertion + grip.tip_ahead + at_tip.max(at_rim) / 2.0
+        let [low, high] = self.tilt_range();
+        let askew = (low - self.rim.slope).abs().max((high - self.rim.slope).abs());
+        // The tool is half the difference of the pads' distances from the middle of the rim.
+        let [upper, lower] = self.pad_distances(askew);
+        let flush = self.grasp(0.0, self.rim.slope, false);
+        flush.object_from_tool.translation.vector.norm() + (upper - lower).abs() / 2.0
     }
 
     fn sample(&self, rng: &mut dyn rand::Rng) -> Grasp {
         let azimuth = rng.random_range(0.0..TAU);
-        let tilt = rng.random_range(self.options.min_tilt..=self.options.max_tilt);
-        self.grasp(azimuth, tilt, rng.random_bool(0.5))
+        let [low, high] = self.tilt_range();
+        self.grasp(azimuth, rng.random_range(low..=high), rng.random_bool(0.5))
     }
 
     fn grid(&self) -> Vec<Grasp> {
-        let tilts = &self.options.grid_tilts;
+        let tilts = &self.options.tilts;
         azimuths(self.options.grid_azimuths)
             .flat_map(|azimuth| tilts.iter().map(move |tilt| (azimuth, *tilt)))
             .flat_map(|(azimuth, tilt)| [false, true].map(|f| self.grasp(azimuth, tilt, f)))
@@ -226,42 +281,6 @@ fn point_segment_distance(p: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> 
     let length = along.norm_squared();
     let t = if length > 0.0 { ((p - a).dot(&along) / length).clamp(0.0, 1.0) } else { 0.0 };
     (p - (a + t * along)).norm()
-}
-
-/// How well a rim grasp holds; a report, never a constraint of planning.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RimHold {
-    /// Are the two pads and the rim in planar force closure: |tilt + slope| <= atan mu?
-    pub force_closure: bool,
-    /// Largest |tilt| of force closure on a flat rim, radians: atan mu.
-    pub tilt_limit: f64,
-    /// Moment of the plate's weight about the pads of a level hand, N m.
-    pub moment: f64,
-    /// Grip force whose couple over the pad length holds that moment, N.
-    pub grip_force: f64,
-}
-
-/// How well the pads hold a plate of `mass` kilograms at a lever of `lever` metres (plate centre to
-/// pad centre) with pads of `pad_length` metres.
-///
-/// # Errors
-/// When a number is not finite and positive, or `tilt` is outside 90 degrees either way.
-pub fn rim_hold(
-    tilt: f64,
-    friction: Friction,
-    mass: f64,
-    lever: f64,
-    pad_length: f64,
-) -> Result<RimHold, PrimitiveError> {
-    let tilt = within("tilt", tilt, -FRAC_PI_2, FRAC_PI_2)?;
-    let pad = positive("pad length", pad_length)?;
-    let moment = positive("mass", mass)? * GRAVITY * positive("lever", lever)?;
-    Ok(RimHold {
-        force_closure: tilt.abs() <= friction.angle(),
-        tilt_limit: friction.angle(),
-        moment,
-        grip_force: 2.0 * moment / pad,
-    })
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use rand::RngExt as _;
 
 use super::footprint::{Footprint, GRID_OPENINGS, Opening, fitting_openings, sample_opening};
+use super::hold::{LINE_WIDTH_M, PadContact};
 use super::{Grasp, GraspFamily, GraspKind, Grip, radial_and_tangent};
 use crate::error::{PrimitiveError, finite, positive, within};
 
@@ -18,6 +19,8 @@ pub struct SideGrasps {
     footprint: Footprint,
     past_axis: f64,
     offset_z: f64,
+    /// Half the height over which the sides are upright.
+    half_upright: f64,
     grip: Grip,
     openings: Vec<Opening>,
 }
@@ -44,9 +47,18 @@ impl SideGrasps {
             footprint,
             past_axis: finite("fingertip reach past the axis", past_axis)?,
             offset_z: within("grasp height above the centre", offset_z, -half, half)?,
+            half_upright: half,
             grip,
             openings,
         })
+    }
+
+    /// The same for an object whose sides are upright only farther than `end` metres from its top and bottom, as those of a
+    /// capsule.
+    #[must_use]
+    pub fn with_round_ends(mut self, end: f64) -> Self {
+        self.half_upright -= end;
+        self
     }
 
     /// The grasp with the fingers closing along `opening`, the wrist 90 degrees to the left or right of it.
@@ -62,6 +74,25 @@ impl SideGrasps {
 }
 
 impl GraspFamily for SideGrasps {
+    fn pads(&self, grasp: &Grasp) -> Option<PadContact> {
+        let GraspKind::Side { azimuth, flipped } = grasp.kind else { return None };
+        let [back, tip] = self.grip.pads_along();
+        let axis = tip - self.past_axis;
+        let across = self.footprint.across(azimuth + FRAC_PI_2);
+        // Flat pads touch a round side along the line through its axis, or, where they do not come so far, on an edge.
+        let short = (back - axis).max(axis - tip).max(0.0);
+        let [from, to] = match across {
+            None => [axis - LINE_WIDTH_M / 2.0, axis + LINE_WIDTH_M / 2.0],
+            Some(size) => [back.max(axis - size / 2.0), tip.min(axis + size / 2.0)],
+        };
+        let askew_rad = across.map_or((short / (grasp.closed_gap_m / 2.0)).min(1.0).asin(), |_| 0.0);
+        let offset = if flipped { self.offset_z } else { -self.offset_z };
+        let half = self.grip.pad_width / 2.0;
+        let [bottom, top] = [offset - self.half_upright, offset + self.half_upright];
+        let flat = PadContact::flat([from, bottom.max(-half)], [to, top.min(half)]);
+        Some(PadContact { askew_rad, ..flat })
+    }
+
     fn sample(&self, rng: &mut dyn rand::Rng) -> Grasp {
         let opening = sample_opening(&self.footprint, &self.openings, rng);
         let from_right = rng.random_bool(0.5);

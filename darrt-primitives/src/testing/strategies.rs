@@ -42,7 +42,8 @@ pub fn grasping<M: Manipulator>(m: &Tabletop<M>) -> impl Strategy<Value = Tablet
     let closes = move |state: TabletopState<M>| {
         let object = state.mode.engaged()?;
         let tool = m.manipulator().world_from_tool(&state.robot);
-        let held = Held { object, tool_from_object: tool.inverse() * state.object(object)? };
+        let tool_from_object = tool.inverse() * state.object(object)?;
+        let held = Held { object, tool_from_object, max_tilt_rad: std::f64::consts::PI };
         let mode = state.mode.attached(held, 0.5 * state.mode.gap_m())?;
         Some(State { mode, ..state })
     };
@@ -85,8 +86,10 @@ fn held<M: Manipulator>(m: &Tabletop<M>, state: &TabletopState<M>, seed: u64) ->
         (0..m.movables().len()).filter(|i| m.movables().get(*i).is_some_and(can_be_grasped)).collect();
     let index = *graspable.get(rng.random_range(0..graspable.len().max(1)))?;
     let movable = m.movables().get(index)?;
-    let grasp = movable.grasps.get(rng.random_range(0..movable.grasps.len()))?.sample(&mut rng);
-    let held = Held { object: ObjectId::new(index), tool_from_object: grasp.object_from_tool.inverse() };
+    let family = movable.grasps.get(rng.random_range(0..movable.grasps.len()))?;
+    let grasp = family.sample(&mut rng);
+    let max_tilt_rad = m.hold(movable, &**family, &grasp).ok()?.max_tilt_rad;
+    let held = Held { object: ObjectId::new(index), tool_from_object: grasp.object_from_tool.inverse(), max_tilt_rad };
     let mut state = state.clone();
     state.mode = state.mode.attached(held, grasp.closed_gap_m)?;
     *state.objects.get_mut(index)? = m.manipulator().world_from_tool(&state.robot) * held.tool_from_object;

@@ -120,7 +120,7 @@ fn movable(
         surfaces: surfaces.to_vec(),
         surface_share: 0.7,
     })?;
-    let grip = Grip { open_gap: 0.095, tip_ahead: super::gantry::TIP_BEYOND_TOOL_M, approach: 0.1 };
+    let grip = Grip { open_gap: 0.095, tip_ahead: super::gantry::TIP_BEYOND_TOOL_M, approach: 0.1, ..Grip::default() };
     let grasps = OverheadGrasps::new(footprint, 2.0 * half_height_m, DEPTH_M, grip)?;
     let movable = Movable {
         body: Body::single(name, shape)?,

@@ -89,8 +89,9 @@ fn check_roundness(object: &Object, key: &str) -> Result<(), Located> {
 
 fn check_families(object: &Object, key: &str) -> Result<(), Located> {
     let (rim, overhead, side) = (&object.rim, &object.overhead, &object.side);
+    let rim_tilts = object.rim_tilts_deg();
     let families = [
-        ("rim", &rim.tilts_deg, rim.azimuths, [rim.insertion_m, rim.approach_m, rim.lift_m], rim.opening_m),
+        ("rim", &rim_tilts, rim.azimuths, [rim.insertion_m, rim.approach_m, rim.lift_m], rim.opening_m),
         (
             "overhead",
             &overhead.tilts_deg,

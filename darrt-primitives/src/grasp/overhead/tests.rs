@@ -118,15 +118,6 @@ fn small_things_that_cannot_be_gripped_from_above_are_refused_by_name() {
     }
 }
 
-#[test]
-fn grip_force_of_a_bowl() {
-    let force = least_grip_force(0.3, Friction::new(0.5).unwrap()).unwrap();
-    assert!((force - 2.9).abs() < 0.05);
-    let smooth = least_grip_force(0.3, Friction::new(0.25).unwrap()).unwrap();
-    assert!((smooth - 2.0 * force).abs() < 1e-12, "half the friction, twice the force");
-    assert!(least_grip_force(0.3, Friction::NONE).is_err());
-}
-
 proptest! {
     #[test]
     fn wall_fingertips_end_at_their_depth_on_both_sides(

@@ -2,8 +2,13 @@ use super::*;
 use nalgebra::{Isometry3, Matrix3};
 use proptest::prelude::*;
 
+fn level() -> Rim {
+    Rim::level(0.14, 0.02, 0.14).unwrap()
+}
+
+/// Taken 0.03 m inside the rim.
 fn plate() -> RimGrasps {
-    RimGrasps::new(0.14, 0.02, Grip::default(), RimOptions::default()).unwrap()
+    RimGrasps::new(level(), Grip::default(), RimOptions { insertion: 0.03, ..RimOptions::default() }).unwrap()
 }
 
 fn surface(corners: &[(f64, f64)]) -> SupportSurface {
@@ -80,7 +85,7 @@ fn verified_picks_and_places_are_reproduced() {
 
 #[test]
 fn the_pads_of_a_tilted_hand_touch_the_plate_and_do_not_enter_it() {
-    for tilt_deg in [-45.0, -20.0, 0.0, 10.0, 30.0, 45.0_f64] {
+    for tilt_deg in [-45.0, -20.0, -1.0, 0.0, 1.0, 10.0, 30.0, 45.0_f64] {
         let grasp = plate().grasp(0.7, tilt_deg.to_radians(), false);
         // How deep the pads, closed, reach into the plate; they go on behind the rim.
         let mut touches = [f64::INFINITY; 2];
@@ -113,7 +118,52 @@ fn the_wrist_stands_outside_and_the_fingertips_end_inside_the_rim() {
 
 #[test]
 fn the_grid_has_every_azimuth_tilt_and_roll() {
-    assert_eq!(plate().grid().len(), 24 * 3 * 2);
+    assert_eq!(plate().grid().len(), 24 * 2);
+    let tilts = [-0.5, 0.0, 1.0].map(f64::to_radians).to_vec();
+    let three = RimGrasps::new(level(), Grip::default(), RimOptions { tilts, ..RimOptions::default() });
+    assert_eq!(three.unwrap().grid().len(), 24 * 3 * 2);
+}
+
+#[test]
+fn a_sloping_rim_is_taken_flush_from_its_end() {
+    let slope = 14.0_f64.to_radians();
+    let rim = Rim::sloping(0.14, 0.012, slope, 0.045, 0.005).unwrap();
+    let grasps = RimGrasps::new(rim, Grip::default(), RimOptions::default()).unwrap();
+    let (sin, cos) = slope.sin_cos();
+    for grasp in grasps.grid() {
+        assert_eq!((grasp.closed_gap_m, grasp.open_gap_m), (0.005, 0.05));
+        // The end of the rim as the hand has it: 0.04 behind the fingertips, its corners on the pads.
+        let mut corners =
+            [0.0025, -0.0025].map(|side| grasp.object_from_tool * nalgebra::Point3::new(-0.022, side, 0.0));
+        corners.sort_by(|a, b| a.z.total_cmp(&b.z));
+        let [lower, upper] = corners.map(|p| [p.x.hypot(p.y), p.z]);
+        let expected = [[0.14, 0.012 - 0.005 * cos], [0.14 - 0.005 * sin, 0.012]];
+        for (found, expected) in [lower, upper].into_iter().flatten().zip(expected.into_iter().flatten()) {
+            assert!((found - expected).abs() < 1e-12, "{lower:?} {upper:?}");
+        }
+        let pads = grasps.pads(&grasp).unwrap();
+        assert!(pads.askew_rad < 1e-12 && (pads.size_m[0] - 0.036).abs() < 1e-12, "{pads:?}");
+    }
+}
+
+#[test]
+fn what_the_pads_lie_on_ends_at_the_fingertips_at_the_rim_and_at_its_inner_end() {
+    // Insertion, width of the rim, and from where to where along the tool the pads lie on it.
+    for (insertion, width, from, to) in [
+        (0.03, 0.14, -0.012, 0.018),
+        (0.036, 0.14, -0.018, 0.018),
+        (0.05, 0.14, -0.018, 0.018),
+        (0.03, 0.02, -0.012, 0.008),
+        (0.05, 0.02, -0.018, -0.012),
+        (0.06, 0.02, -0.018, -0.022),
+    ] {
+        let rim = Rim::level(0.14, 0.02, width).unwrap();
+        let grasps = RimGrasps::new(rim, Grip::default(), RimOptions { insertion, ..RimOptions::default() }).unwrap();
+        let pads = grasps.pads(&grasps.grid()[5]).unwrap();
+        assert!((pads.middle_m[0] - f64::midpoint(from, to)).abs() < 1e-12, "{insertion} {pads:?}");
+        assert!((pads.size_m[0] - f64::max(to - from, 0.0)).abs() < 1e-12, "{insertion} {pads:?}");
+        assert_eq!((pads.size_m[1], pads.middle_m[1]), (0.0226, 0.0));
+    }
 }
 
 #[test]
@@ -121,17 +171,27 @@ fn unusable_options_are_refused() {
     let with = |change: fn(&mut RimOptions)| {
         let mut options = RimOptions::default();
         change(&mut options);
-        RimGrasps::new(0.14, 0.02, Grip::default(), options)
+        RimGrasps::new(level(), Grip::default(), options)
     };
     assert!(with(|_| ()).is_ok());
     assert!(with(|o| o.insertion = 0.2).is_err());
-    assert!(with(|o| o.grid_tilts.clear()).is_err());
-    assert!(with(|o| o.grid_tilts.push(1.0)).is_err());
     assert!(with(|o| o.grid_azimuths = 0).is_err());
-    assert!(with(|o| o.max_tilt = f64::NAN).is_err());
-    assert!(with(|o| o.min_tilt = 1.0).is_err());
-    let thick = RimGrasps::new(0.14, 0.06, Grip::default(), RimOptions::default());
-    assert!(thick.is_err());
+    assert!(with(|o| o.tilts.push(1.0_f64.to_radians())).is_ok());
+    assert!(with(|o| o.tilts.push(-1.1_f64.to_radians())).is_err());
+    assert!(with(|o| o.tilts.push(f64::NAN)).is_err());
+    let thick = Rim::level(0.14, 0.06, 0.14).unwrap();
+    assert!(RimGrasps::new(thick, Grip::default(), RimOptions::default()).is_err());
+}
+
+#[test]
+fn rims_that_cannot_be_are_refused_by_name() {
+    let said = |rim: Result<Rim, PrimitiveError>| rim.unwrap_err().to_string();
+    assert_eq!(said(Rim::level(0.14, 0.0, 0.14)), "plate thickness must be above 0, found 0");
+    assert_eq!(said(Rim::level(0.0, 0.02, 0.14)), "plate radius must be above 0, found 0");
+    assert_eq!(said(Rim::level(0.14, 0.02, 0.15)), "rim width must lie in [0, 0.14], found 0.15");
+    assert!(said(Rim::sloping(0.14, 0.01, 1.0, 0.03, 0.005)).starts_with("rim slope must lie in [0, 0.78"));
+    assert_eq!(said(Rim::sloping(0.14, 0.01, 0.2, 0.03, 0.0)), "rim thickness must be above 0, found 0");
+    assert_eq!(said(Rim::sloping(0.14, -0.01, 0.2, 0.03, 0.005)), "plate top must be above 0, found -0.01");
 }
 
 #[test]
@@ -264,20 +324,6 @@ fn a_point_is_as_far_from_a_segment_as_from_its_nearest_point() {
         assert_eq!(point_segment_distance(&Point2::new(x, y), &b, &a), expected);
     }
     assert_eq!(point_segment_distance(&Point2::new(4.0, 6.0), &a, &a), 5.0);
-}
-
-#[test]
-fn force_closure_and_holding_force() {
-    for (mu, degrees) in [(0.5, 26.6), (0.8, 38.7)] {
-        let friction = Friction::new(mu).unwrap();
-        let hold = |tilt: f64| rim_hold(tilt.to_radians(), friction, 0.5, 0.125, 0.03).unwrap();
-        assert!((hold(0.0).tilt_limit.to_degrees() - degrees).abs() < 0.05);
-        assert!(hold(degrees - 0.2).force_closure && hold(-degrees + 0.2).force_closure);
-        assert!(!hold(degrees + 0.2).force_closure && !hold(-degrees - 0.2).force_closure);
-        assert!((hold(0.0).moment - 0.61).abs() < 5e-3);
-        assert!((hold(0.0).grip_force - 41.0).abs() < 0.5);
-    }
-    assert!(rim_hold(0.0, Friction::NONE, 0.0, 0.125, 0.03).is_err());
 }
 
 proptest! {
