@@ -20,12 +20,13 @@ fn limits_of_the_description_are_the_stock_ones() {
 }
 
 #[test]
-fn every_box_of_the_facts_is_there() {
+fn every_part_of_the_robot_is_there() {
     let model = model();
     let parts: usize = model.bodies().iter().flatten().map(|b| b.parts.len()).sum();
-    // Trunk: 3 base, 1 bellow, 3 torso, 2 head, 1 sensor block, 1 scanner. Arm: 2 + 1 + 2 + 1 + 1 + 2 + 1 + 1 + 4.
-    assert_eq!(parts, 11 + 2 * 15);
-    assert_eq!(model.arm_bodies(Side::Right).len(), 12);
+    // Trunk: 4 base, 4 casters, 1 bellow, 5 torso, 2 head, 1 sensor block, 1 scanner.
+    // Arm: 3 shoulder, 1 collar, 3 upper arm, 1 elbow, 2 forearm, 1 wrist, 1 palm, 4 fingers.
+    assert_eq!(parts, 18 + 2 * 16);
+    assert_eq!(model.arm_bodies(Side::Right).len(), 11);
     assert_eq!(model.trunk_links().count(), 7);
 }
 

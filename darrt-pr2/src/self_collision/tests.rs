@@ -2,63 +2,24 @@ use super::*;
 use crate::arm::{ArmConfiguration, LimitKind};
 use crate::model::WholeBody;
 use crate::postures::ArmPosture;
-use darrt_geom::{Body, Shape};
-use nalgebra::{Isometry3, Matrix3, Vector3};
+use darrt_geom::oracle::{PosedBody, nearest};
 use rand::{RngExt, SeedableRng};
 use std::f64::consts::PI;
 
-/// An oriented box in the world.
-struct Placed {
-    centre: Vector3<f64>,
-    axes: Matrix3<f64>,
-    half: Vector3<f64>,
-}
-
-fn boxes(body: &Body, world_from_link: &Isometry3<f64>) -> Vec<Placed> {
-    let place = |part: &darrt_geom::Part| {
-        let Shape::Cuboid { half_extents, .. } = &part.shape else {
-            panic!("{}: not a box", body.name);
-        };
-        let pose = world_from_link * part.body_from_shape;
-        Placed {
-            centre: pose.translation.vector,
-            axes: pose.rotation.to_rotation_matrix().into_inner(),
-            half: *half_extents,
-        }
-    };
-    body.parts.iter().map(place).collect()
-}
-
-/// Separating axis test, all fifteen axes: deliberately plain.
-fn overlap(a: &Placed, b: &Placed) -> bool {
-    let mut axes: Vec<Vector3<f64>> = Vec::new();
-    for i in 0..3 {
-        axes.push(a.axes.column(i).into());
-        axes.push(b.axes.column(i).into());
-        for j in 0..3 {
-            axes.push(a.axes.column(i).cross(&b.axes.column(j)));
-        }
-    }
-    let radius = |p: &Placed, axis: &Vector3<f64>| (p.axes.transpose() * axis).abs().dot(&p.half);
-    axes.iter()
-        .filter(|axis| axis.norm() > 1e-9)
-        .all(|axis| (b.centre - a.centre).dot(axis).abs() <= radius(a, axis) + radius(b, axis))
-}
-
-/// Names of the pairs that touch.
+/// Names of the pairs that touch, by the exact oracle.
 fn touching(model: &Pr2Model, state: &WholeBody, active: Side) -> Vec<String> {
+    touching_of(model, state, &link_pairs(model, active))
+}
+
+/// Those of the given pairs that touch.
+fn touching_of(model: &Pr2Model, state: &WholeBody, pairs: &[[usize; 2]]) -> Vec<String> {
     let poses = model.link_poses(state);
     let name = |link: usize| model.tree().link_names()[link].to_string();
+    let posed = |link: usize| PosedBody { body: model.body(link).unwrap(), world_from_body: poses[link] };
     let meets = |[a, b]: &[usize; 2]| {
-        let first = boxes(model.body(*a).unwrap(), &poses[*a]);
-        let second = boxes(model.body(*b).unwrap(), &poses[*b]);
-        first.iter().any(|p| second.iter().any(|q| overlap(p, q)))
+        nearest(&[posed(*a), posed(*b)], &|_, _| false).unwrap().is_some_and(|found| found.intersects)
     };
-    link_pairs(model, active)
-        .iter()
-        .filter(|pair| meets(pair))
-        .map(|[a, b]| format!("{} - {}", name(*a), name(*b)))
-        .collect()
+    pairs.iter().filter(|pair| meets(pair)).map(|[a, b]| format!("{} - {}", name(*a), name(*b))).collect()
 }
 
 fn state(active: Side, q: ArmConfiguration) -> WholeBody {
@@ -112,19 +73,22 @@ fn folded_arms_are_reported() {
     assert!(mirror.iter().any(|p| p == "l_forearm_link - r_shoulder_pan_link"), "{mirror:?}");
 }
 
-/// Measured on another implementation of the same boxes: forearm against own shoulder in 2 to 4 % of configurations.
+/// Boxes around the same parts met in 2 to 4 % of configurations, measured on another implementation; the shoulder's round
+/// part leaves a little more room.
 #[test]
-fn the_forearm_meets_its_shoulder_as_often_as_measured() {
+fn the_forearm_meets_its_shoulder_about_as_often_as_measured() {
     let model = Pr2Model::embedded().unwrap();
     let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(1);
     let limits = model.limits(Side::Right, LimitKind::Soft);
+    let link = |name| model.tree().link_index(name).unwrap();
+    let pair = [[link("r_forearm_link"), link("r_shoulder_pan_link")]];
+    assert!(link_pairs(&model, Side::Right).contains(&pair[0]));
     let meets = |_: &u32| {
         let q = limits.map(|l| rng.random_range(l.lower.max(-PI)..l.upper.min(PI)));
-        let found = touching(&model, &state(Side::Right, q), Side::Right);
-        found.iter().any(|p| p == "r_forearm_link - r_shoulder_pan_link")
+        !touching_of(&model, &state(Side::Right, q), &pair).is_empty()
     };
     let count = (0..1000).filter(meets).count();
-    assert!((15..=45).contains(&count), "{count} of 1000");
+    assert!((10..=45).contains(&count), "{count} of 1000");
 }
 
 #[test]
