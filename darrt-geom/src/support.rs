@@ -1,5 +1,9 @@
 //! Horizontal surfaces things rest on and are pushed across.
+//!
+//! Surfaces that lie flush, with no step and hardly a gap between them, are joined to one whose edge is that of all together:
+//! [`SupportSurface::joined`].
 
+mod joined;
 mod polygon;
 
 use crate::check;
@@ -7,6 +11,8 @@ use crate::error::GeomError;
 use nalgebra::{Point2, Rotation2, Unit, Vector2};
 use rand::RngExt as _;
 use std::sync::Arc;
+
+pub use joined::{FLUSH_GAP, FLUSH_HEIGHT, LEAST_SEAM};
 
 /// Most vertices a surface may have.
 pub const MAXIMUM_VERTICES: usize = 512;
@@ -22,22 +28,40 @@ pub struct EdgePoint {
     pub point: Point2<f64>,
     /// Unit normal of the edge, away from the surface.
     pub outward: Unit<Vector2<f64>>,
-    /// Which edge: from vertex `edge` to the next (counter-clockwise).
+    /// Which edge, in the order of [`SupportSurface::edges`].
     pub edge: usize,
     /// Distance in metres from the point asked about (never negative).
     pub distance: f64,
 }
 
-/// A horizontal surface: a simple polygon in world x and y (convex or not) at one height.
+/// A straight part of a surface's boundary; the surface lies on its left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// Where it begins, world x and y.
+    pub start: Point2<f64>,
+    /// Where it ends.
+    pub end: Point2<f64>,
+    /// Unit normal away from the surface.
+    pub outward: Unit<Vector2<f64>>,
+}
+
+impl Edge {
+    fn new((start, end): (Point2<f64>, Point2<f64>)) -> Self {
+        let along = end - start;
+        Self { start, end, outward: Unit::new_normalize(Vector2::new(along.y, -along.x)) }
+    }
+}
+
+/// A horizontal surface at one height: a simple polygon in world x and y (convex or not), or several joined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupportSurface {
     name: Arc<str>,
     height: f64,
-    /// Counter-clockwise.
-    vertices: Vec<Point2<f64>>,
-    /// Same length as `vertices`.
-    outward: Vec<Unit<Vector2<f64>>>,
-    /// Triangles that tile the polygon, each with the area of itself and all before it.
+    /// Simple polygons, counter-clockwise, whose union is the surface.
+    pieces: Vec<Vec<Point2<f64>>>,
+    /// The boundary: of a single polygon its sides in order, from the first vertex.
+    edges: Vec<Edge>,
+    /// Triangles that tile the pieces, each with the area of itself and all before it.
     tiles: Vec<([Point2<f64>; 3], f64)>,
 }
 
@@ -56,21 +80,22 @@ impl SupportSurface {
         check::coordinate(format_args!("height of `{name}`"), z)?;
         check::count(format_args!("vertices of `{name}`"), vertices.len(), 3, MAXIMUM_VERTICES)?;
         let vertices = polygon::normalise(&name, vertices)?;
-        let outward = polygon::edges(&vertices)
-            .map(|(a, b)| {
-                let along = b - a;
-                Unit::new_normalize(Vector2::new(along.y, -along.x))
-            })
-            .collect();
+        let edges = polygon::edges(&vertices).map(Edge::new).collect();
+        Ok(Self::of_pieces(name, z, vec![vertices], edges))
+    }
+
+    /// A surface of sound pieces with this boundary.
+    fn of_pieces(name: Arc<str>, height: f64, pieces: Vec<Vec<Point2<f64>>>, edges: Vec<Edge>) -> Self {
         let mut total = 0.0;
-        let tiles = polygon::triangulate(&vertices)
-            .into_iter()
+        let tiles = pieces
+            .iter()
+            .flat_map(|piece| polygon::triangulate(piece))
             .map(|tile| {
                 total += polygon::twice_area(&tile).abs() / 2.0;
                 (tile, total)
             })
             .collect();
-        Ok(Self { name, height: z, vertices, outward, tiles })
+        Self { name, height, pieces, edges, tiles }
     }
 
     /// A rectangle with full side lengths `size`, turned by `yaw` about its `centre`.
@@ -106,37 +131,50 @@ impl SupportSurface {
         self.height
     }
 
-    /// The boundary, counter-clockwise.
-    pub fn vertices(&self) -> &[Point2<f64>] {
-        &self.vertices
+    /// The boundary; of a single polygon counter-clockwise from its first vertex, of a joined surface in no particular order.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
     }
 
-    /// Area in square metres.
+    /// Where the edges begin: of a single polygon its vertices, counter-clockwise.
+    pub fn vertices(&self) -> impl DoubleEndedIterator<Item = Point2<f64>> + ExactSizeIterator + '_ {
+        self.edges.iter().map(|edge| edge.start)
+    }
+
+    /// Area in square metres; what two joined polygons share counts twice.
     pub fn area(&self) -> f64 {
         self.tiles.last().map_or(0.0, |tile| tile.1)
     }
 
     /// Corners `(minimum, maximum)` of the axis-aligned rectangle around the surface.
     pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
-        let first = self.vertices.first().copied().unwrap_or_else(Point2::origin);
-        self.vertices.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
+        let first = self.vertices().next().unwrap_or_else(Point2::origin);
+        self.vertices().fold((first, first), |(low, high), p| (low.inf(&p), high.sup(&p)))
     }
 
     /// Whether the point lies over the surface; its boundary (to [`ON_BOUNDARY`]) belongs to it.
     pub fn contains(&self, p: &Point2<f64>) -> bool {
-        polygon::winds_around(&self.vertices, p) || self.nearest_edge_point(p).distance <= ON_BOUNDARY
+        self.is_inside(p) || self.nearest_edge_point(p).distance <= ON_BOUNDARY
     }
 
     /// Signed distance in metres to the boundary: positive over the surface, negative beside it.
     pub fn depth(&self, p: &Point2<f64>) -> f64 {
         let distance = self.nearest_edge_point(p).distance;
-        if distance <= ON_BOUNDARY || polygon::winds_around(&self.vertices, p) { distance } else { -distance }
+        if distance <= ON_BOUNDARY || self.is_inside(p) { distance } else { -distance }
+    }
+
+    /// Whether the point lies inside; points of the boundary may go either way, points of a seam are inside.
+    fn is_inside(&self, p: &Point2<f64>) -> bool {
+        match &self.pieces[..] {
+            [only] => polygon::winds_around(only, p),
+            pieces => pieces.iter().any(|piece| joined::holds(piece, p)),
+        }
     }
 
     /// The boundary point nearest to `p`; of several the one on the edge with the smallest index.
     pub fn nearest_edge_point(&self, p: &Point2<f64>) -> EdgePoint {
         let mut best = EdgePoint { point: *p, outward: Vector2::x_axis(), edge: 0, distance: f64::INFINITY };
-        for (edge, ((a, b), outward)) in polygon::edges(&self.vertices).zip(&self.outward).enumerate() {
+        for (edge, Edge { start: a, end: b, outward }) in self.edges.iter().enumerate() {
             let along = b - a;
             let t = ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
             let point = a + along * t;
@@ -159,7 +197,7 @@ impl SupportSurface {
             return None;
         }
         let mut best: Option<EdgePoint> = None;
-        for (edge, ((a, b), outward)) in polygon::edges(&self.vertices).zip(&self.outward).enumerate() {
+        for (edge, Edge { start: a, end: b, outward }) in self.edges.iter().enumerate() {
             let leaving = direction.dot(outward);
             if leaving <= 1e-12 {
                 continue;
@@ -186,8 +224,8 @@ impl SupportSurface {
         (radius - self.depth(centre)).max(0.0)
     }
 
-    /// A point drawn uniformly from those at least `inset` metres inside the boundary; `None` when a thousand draws found
-    /// none (the surface is too narrow, or `inset` is NaN).
+    /// A point drawn uniformly from those at least `inset` metres inside the boundary (twice as often from what two joined
+    /// polygons share); `None` when a thousand draws found none (the surface is too narrow, or `inset` is NaN).
     pub fn sample(&self, rng: &mut dyn rand::Rng, inset: f64) -> Option<Point2<f64>> {
         (0..TRIES).map(|_| self.draw(rng)).find(|p| self.depth(p) >= inset)
     }

@@ -76,12 +76,12 @@ impl Place {
         match self {
             Self::At(at) => Point2::from(at.map(|x| f64::from(x) / 1000.0)),
             Self::Drawn(seed) => {
-                surface.sample(&mut stream(*seed, 0, 0, Purpose::Sample), 0.0).unwrap_or(surface.vertices()[0])
+                surface.sample(&mut stream(*seed, 0, 0, Purpose::Sample), 0.0).unwrap_or(surface.edges()[0].start)
             }
             Self::Edge { edge, share } => {
-                let all = surface.vertices();
-                let (a, b) = (all[usize::from(*edge) % all.len()], all[(usize::from(*edge) + 1) % all.len()]);
-                a + (b - a) * (f64::from(*share) / 255.0)
+                let all = surface.edges();
+                let edge = all[usize::from(*edge) % all.len()];
+                edge.start + (edge.end - edge.start) * (f64::from(*share) / 255.0)
             }
         }
     }

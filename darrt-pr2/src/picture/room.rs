@@ -100,7 +100,7 @@ impl Room {
 
 /// The corners of a surface in the world.
 pub(super) fn surface_points(surface: &SupportSurface) -> impl Iterator<Item = Point3<f64>> {
-    surface.vertices().iter().map(|corner| Point3::new(corner.x, corner.y, surface.height()))
+    surface.vertices().map(|corner| Point3::new(corner.x, corner.y, surface.height()))
 }
 
 /// `None` for a body without points.

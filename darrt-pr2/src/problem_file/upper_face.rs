@@ -105,19 +105,13 @@ fn check_mesh(surface: &SupportSurface, sheet: &Sheet, body: &Body, key: &str) -
 
 /// Corners and middles of the edges, moved inside by the tolerance, and points inside; the same ones every time.
 fn points_of(surface: &SupportSurface) -> Vec<Point2<f64>> {
-    let corners = surface.vertices();
-    let next = |i: usize| corners.iter().cycle().nth(i);
-    let outward = |a: &Point2<f64>, b: &Point2<f64>| {
-        let along = b - a;
-        Vector2::new(along.y, -along.x).try_normalize(0.0).unwrap_or_default()
-    };
-    let mut edge = Vec::with_capacity(2 * corners.len());
-    for (i, corner) in corners.iter().enumerate() {
-        let (Some(after), Some(before)) = (next(i + 1), next(i + corners.len() - 1)) else { continue };
-        let ahead = outward(corner, after);
-        let bisector = (outward(before, corner) + ahead).try_normalize(1e-9).unwrap_or(ahead);
-        edge.push(corner - bisector * TOLERANCE);
-        edge.push(nalgebra::center(corner, after) - ahead * TOLERANCE);
+    let edges = surface.edges();
+    let mut edge = Vec::with_capacity(2 * edges.len());
+    for (side, before) in edges.iter().zip(edges.iter().cycle().skip(edges.len().saturating_sub(1))) {
+        let ahead = side.outward.into_inner();
+        let bisector = (before.outward.into_inner() + ahead).try_normalize(1e-9).unwrap_or(ahead);
+        edge.push(side.start - bisector * TOLERANCE);
+        edge.push(nalgebra::center(&side.start, &side.end) - ahead * TOLERANCE);
     }
     let stride = edge.len().div_ceil(ASKED[0]).max(1);
     // A sharp corner moved inside may have left the polygon on its other side.

@@ -216,7 +216,7 @@ pub fn fingertip_edge_distance(
         .map(|(a, b)| segment_distance(surface, a, b))
         .try_fold(f64::INFINITY, |least, side| Some(least.min(side?)))?;
     // A support smaller than a fingertip could lie wholly inside the strip.
-    let swallowed = surface.vertices().iter().any(|vertex| {
+    let swallowed = surface.vertices().any(|vertex| {
         let at = vertex - tip;
         (0.0..=insertion).contains(&at.dot(&outward)) && at.perp(&outward).abs() < half_width
     });
@@ -258,13 +258,12 @@ fn segment_distance(surface: &SupportSurface, a: &Point2<f64>, b: &Point2<f64>) 
     if outside <= 0.0 {
         return None;
     }
-    let vertices = surface.vertices();
     let mut least = outside;
-    for (c, d) in vertices.iter().zip(vertices.iter().cycle().skip(1)) {
-        if segments_cross(a, b, c, d) {
+    for edge in surface.edges() {
+        if segments_cross(a, b, &edge.start, &edge.end) {
             return None;
         }
-        least = least.min(point_segment_distance(c, a, b));
+        least = least.min(point_segment_distance(&edge.start, a, b));
     }
     Some(least)
 }
