@@ -7,6 +7,7 @@ use darrt_core::random::{Purpose, stream};
 use darrt_core::state::ObjectId;
 use darrt_geom::clearance::{Clearance, between};
 use darrt_geom::scene::Scene;
+use darrt_geom::support::FLUSH_HEIGHT;
 use darrt_geom::{Body, FixedBody, GeomError, Shape};
 use darrt_primitives::goal::TabletopGoal;
 use nalgebra::{Isometry3, Translation3};
@@ -18,6 +19,8 @@ use crate::world::World;
 const SAMPLES: u64 = 64;
 /// An object is looked at this far above its goal, metres, so that what it stands on is not in its way.
 const LIFT: f64 = 1e-6;
+/// What stands on one of several joined surfaces may be this far from the height of all, metres.
+const ON_TOP: f64 = FLUSH_HEIGHT + 1e-6;
 /// Solids that overlap less than this do not block, metres.
 const ROUNDING: f64 = 1e-9;
 
@@ -57,7 +60,7 @@ fn in_the_way(
     pose: &Isometry3<f64>,
     scene: &Scene,
 ) -> Result<Option<String>, GeomError> {
-    let under = m.surface_under(id, pose, 1e-6).and_then(|s| m.supports().get(s.index()));
+    let under = m.surface_under(id, pose, ON_TOP).and_then(|s| m.supports().get(s.index()));
     let stands_on = |name: &str| under.is_some_and(|s| s.bodies.iter().any(|b| &**b == name));
     let raised = Translation3::new(0.0, 0.0, LIFT) * pose;
     for fixed in scene.bodies().iter().filter(|fixed| !stands_on(&fixed.body.name)) {

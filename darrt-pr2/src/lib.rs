@@ -4,7 +4,7 @@
 //! |---|---|
 //! | what is the PR2? | [`model`], [`arm`], [`forward`], [`gripper`], [`postures`], [`self_collision`] |
 //! | from where does the arm reach a pose? | [`reachability`] |
-//! | how does it plan? | [`robot`], [`world`], [`planning`] |
+//! | how does it plan? | [`robot`], [`world`] (with the private `supports`), [`planning`] |
 //! | the primitives of paper section 5.1 | [`arm_transit`], [`straight_line_arm_transit`], [`arm_rigid_transfer`], [`base_transit`], [`base_rigid_transfer`], [`pick`](mod@pick), [`place`](mod@place), [`push`](mod@push) |
 //! | what is a problem? | [`problem_file`], [`mod@generate`], [`grasp_families`], [`goal_means`], [`goal_check`] |
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
@@ -44,6 +44,7 @@ pub mod schema;
 pub mod self_collision;
 pub mod stopwatch;
 pub mod straight_line_arm_transit;
+mod supports;
 pub mod text_file;
 pub mod verify;
 mod words;

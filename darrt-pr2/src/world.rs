@@ -9,11 +9,11 @@ use darrt_geom::scene::Scene;
 use darrt_primitives::arm_space::ArmSpace;
 use darrt_primitives::goal::{Grip, ObjectGoal, TabletopGoal, Whereabouts};
 use darrt_primitives::manipulator::{Configuration, Manipulator};
-use darrt_primitives::mode::{Mode, SurfaceId};
+use darrt_primitives::mode::Mode;
 use darrt_primitives::object_space::{ObjectSpace, ObjectSpaceParts};
 use darrt_primitives::push::edge_stop::{EdgeRule, RimReach};
 use darrt_primitives::tabletop::{
-    ActionSettings, Movable, ObjectFriction, PlaceSettings, PushSettings, Support, Tabletop, TabletopState,
+    ActionSettings, Movable, ObjectFriction, PlaceSettings, PushSettings, Tabletop, TabletopState,
 };
 use nalgebra::{Isometry3, Point2, Vector3};
 
@@ -22,8 +22,10 @@ use crate::grasp_families::{families, lift_m};
 use crate::model::{Pr2Model, WholeBody};
 use crate::planning_error::PlanningError;
 use crate::postures::ArmPosture;
+use crate::problem_file::geometry::Geometry;
 use crate::problem_file::{self as file, GoalState, GoalTarget, PrimitiveName, ProblemFile, Symmetry};
 use crate::robot::Pr2;
+use crate::supports::Supports;
 
 /// The domain: the PR2 at tables.
 pub type World = Tabletop<Pr2>;
@@ -73,34 +75,28 @@ pub fn build_with(problem: &ProblemFile, change: impl FnOnce(Pr2) -> Pr2) -> Res
     let upper = [bounds.base_x[1], bounds.base_y[1]];
     let space: ArmSpace<ArmConfiguration> = ArmSpace::new(lower, upper, robot.limits(), robot.joint_weights_m())?;
 
-    let surfaces = geometry.scene.surfaces();
-    let supports: Vec<Support> = surfaces
-        .iter()
-        .zip(&geometry.carriers)
-        .map(|(surface, carrier)| {
-            let body = carrier.and_then(|index| geometry.scene.bodies().get(index));
-            Support { surface: surface.clone(), bodies: body.iter().map(|b| Arc::clone(&b.body.name)).collect() }
-        })
-        .collect();
+    let supports = Supports::new(problem, &geometry)?;
     let objects = problem
         .objects
         .iter()
         .zip(&geometry.objects)
         .enumerate()
-        .map(|(index, (object, solid))| movable(problem, (index, object), solid, surfaces, &robot))
+        .map(|(index, (object, solid))| movable(problem, (index, object), solid, &supports, &robot))
         .collect::<Result<Vec<_>, _>>()?;
 
     let mut settings = settings(problem, robot.arm().side)?;
     // A posture that the limits in force forbid is no place to travel through.
     settings.postures.retain(|posture| space.contains_arm(posture));
     let robot = Arc::new(robot);
-    let world = World::new(robot, space, objects, supports, geometry.scene.bodies(), settings)?;
+    let goal = goal(problem, &geometry, &supports)?;
+    let rests_on = geometry.objects.iter().enumerate().map(|(index, o)| supports.holding(index, o.surface));
+    let mode = Mode::resting(rests_on, TRAVEL_GAP);
+    let world = World::new(robot, space, objects, supports.all, geometry.scene.bodies(), settings)?;
     let start = State {
         robot: Configuration { base: problem.robot.base, arm },
         objects: geometry.objects.iter().map(|o| o.world_from_object).collect(),
-        mode: Mode::resting(geometry.objects.iter().map(|o| SurfaceId::new(o.surface)), TRAVEL_GAP),
+        mode,
     };
-    let goal = goal(problem, &geometry.scene, &geometry.objects)?;
     Ok(Built { world, start, goal, scene: geometry.scene })
 }
 
@@ -168,11 +164,9 @@ fn movable(
     problem: &ProblemFile,
     (index, object): (usize, &file::Object),
     solid: &file::geometry::StartingObject,
-    surfaces: &[darrt_geom::SupportSurface],
+    supports: &Supports,
     robot: &Pr2,
 ) -> Result<(ObjectSpace, Movable), PlanningError> {
-    let allowed = problem.allowed_surfaces(object);
-    let is_allowed = |s: &darrt_geom::SupportSurface| allowed.contains(&s.name());
     let reach_m = solid.body.parts.iter().fold(0.0_f64, |most, part| {
         let (centre, radius) = part.shape.bounding_sphere();
         most.max((part.body_from_shape * centre).coords.norm() + radius)
@@ -185,10 +179,9 @@ fn movable(
         is_round: object.symmetry() == Symmetry::Z,
         metres_per_rad: radius.unwrap_or(reach_m),
         half_height_m: solid.depth_below_origin,
-        surfaces: surfaces.iter().filter(|s| is_allowed(s)).cloned().collect(),
+        surfaces: supports.surfaces_of(index).cloned().collect(),
         surface_share: SURFACE_SHARE,
     })?;
-    let ids = surfaces.iter().enumerate().filter(|(_, s)| is_allowed(s)).map(|(i, _)| SurfaceId::new(i)).collect();
     let rim = RimReach { insertion: object.rim.insertion_m, clearance: RIM_CLEARANCE, ..RimReach::default() };
     let named = |flaw| PlanningError::Grasp { object: object.name.clone(), index, flaw };
     let movable = Movable {
@@ -197,7 +190,7 @@ fn movable(
         half_height_m: solid.depth_below_origin,
         reach_m,
         is_pushable: object.pushable(),
-        surfaces: ids,
+        surfaces: supports.of_object(index).into(),
         grasps: families(object, robot.hand()).map_err(named)?,
         rim,
         lift_m: lift_m(object),
@@ -246,37 +239,34 @@ fn settings(problem: &ProblemFile, side: Side) -> Result<ActionSettings<ArmConfi
     })
 }
 
-fn goal(
-    problem: &ProblemFile,
-    scene: &Scene,
-    solids: &[file::geometry::StartingObject],
-) -> Result<TabletopGoal, PlanningError> {
+fn goal(problem: &ProblemFile, geometry: &Geometry, supports: &Supports) -> Result<TabletopGoal, PlanningError> {
     let mut groups = Vec::new();
     for (name, alternatives) in problem.goal.by_object() {
         let unknown = || PlanningError::UnknownObject { name: name.to_owned() };
         let index = problem.objects.iter().position(|o| o.name == name).ok_or_else(unknown)?;
-        let solid = solids.get(index).ok_or_else(unknown)?;
-        let group = alternatives.iter().filter_map(|goal| one_goal(ObjectId::new(index), goal, scene, solid));
+        geometry.objects.get(index).ok_or_else(unknown)?;
+        let group = alternatives.iter().filter_map(|goal| one_goal(index, goal, geometry, supports));
         groups.push(group.collect());
     }
     Ok(TabletopGoal::new(groups))
 }
 
 /// `None` when the goal's keys contradict each other, which the file's validation has refused.
-fn one_goal(
-    object: ObjectId,
-    goal: &file::ObjectGoal,
-    scene: &Scene,
-    solid: &file::geometry::StartingObject,
-) -> Option<ObjectGoal> {
+fn one_goal(object: usize, goal: &file::ObjectGoal, geometry: &Geometry, supports: &Supports) -> Option<ObjectGoal> {
+    let scene = &geometry.scene;
+    let solid = geometry.objects.get(object)?;
     let centre = |pose: Isometry3<f64>| Whereabouts::At(pose.translation.vector);
     let whereabouts = match goal.target()? {
         GoalTarget::On { .. } | GoalTarget::At { .. } => centre(solid.world_from_goal(goal, scene)?),
-        GoalTarget::Within { surface, region } => Whereabouts::Within {
-            surface: SurfaceId::new(scene.surfaces().iter().position(|s| s.name() == surface)?),
-            min: Point2::from(region.min),
-            max: Point2::from(region.max),
-        },
+        GoalTarget::Within { surface, region } => {
+            let index = scene.surfaces().iter().position(|s| s.name() == surface)?;
+            Whereabouts::Within {
+                support: supports.holding(object, index),
+                part: scene.surfaces().get(index)?.clone(),
+                min: Point2::from(region.min),
+                max: Point2::from(region.max),
+            }
+        }
     };
     let grip = match goal.state() {
         GoalState::Released => Grip::Released,
@@ -284,5 +274,5 @@ fn one_goal(
         GoalState::Any => Grip::Any,
     };
     let yaw = goal.yaw.map(|yaw| (yaw, goal.yaw_tolerance));
-    Some(ObjectGoal { object, whereabouts, tolerance_m: goal.tolerance_m, yaw, grip })
+    Some(ObjectGoal { object: ObjectId::new(object), whereabouts, tolerance_m: goal.tolerance_m, yaw, grip })
 }

@@ -5,6 +5,7 @@ use darrt_core::goal::Goal;
 use darrt_core::partial::PartialState;
 use darrt_core::space::so2::turn;
 use darrt_core::state::ObjectId;
+use darrt_geom::support::SupportSurface;
 use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
@@ -29,10 +30,12 @@ pub enum Grip {
 pub enum Whereabouts {
     /// Its centre within the tolerance of this point, upright.
     At(Vector3<f64>),
-    /// Standing on a surface with its centre in the rectangle between two corners (world x, y).
+    /// Standing on a part of a support with its centre in the rectangle between two corners (world x, y).
     Within {
-        /// The surface.
-        surface: SurfaceId,
+        /// The support.
+        support: SurfaceId,
+        /// The part of it, or all of it: where the centre must be besides.
+        part: SupportSurface,
         /// Least x and y.
         min: Point2<f64>,
         /// Largest x and y.
@@ -58,6 +61,9 @@ pub struct ObjectGoal {
 /// How far an object that should be upright may lean, radians.
 pub const UPRIGHT_TOLERANCE_RAD: f64 = 0.01;
 
+/// How often a point of a region is drawn until it lies on the surface.
+const DRAWS: usize = 100;
+
 impl ObjectGoal {
     /// Is this goal met?
     pub fn is_met<M: Manipulator>(&self, state: &TabletopState<M>) -> bool {
@@ -71,9 +77,10 @@ impl ObjectGoal {
         };
         let is_there = match &self.whereabouts {
             Whereabouts::At(place) => (pose.translation.vector - place).norm() <= self.tolerance_m,
-            Whereabouts::Within { surface, min, max } => {
-                let (x, y) = (pose.translation.x, pose.translation.y);
-                resting == Some(*surface) && (min.x..=max.x).contains(&x) && (min.y..=max.y).contains(&y)
+            Whereabouts::Within { support, part, min, max } => {
+                let at = Point2::new(pose.translation.x, pose.translation.y);
+                let is_between = (min.x..=max.x).contains(&at.x) && (min.y..=max.y).contains(&at.y);
+                resting == Some(*support) && is_between && part.contains(&at)
             }
         };
         let up = pose.rotation * Vector3::z();
@@ -90,9 +97,10 @@ impl ObjectGoal {
         };
         match &self.whereabouts {
             Whereabouts::At(place) => Some(upright(*place, yaw)),
-            Whereabouts::Within { surface, min, max } => {
-                let at = Point2::new(rng.random_range(min.x..=max.x), rng.random_range(min.y..=max.y));
-                Some(m.objects().get(self.object.index())?.standing(m.surface(*surface)?, &at, yaw))
+            Whereabouts::Within { support, part, min, max } => {
+                let mut draw = || Point2::new(rng.random_range(min.x..=max.x), rng.random_range(min.y..=max.y));
+                let at = (0..DRAWS).map(|_| draw()).find(|at| part.contains(at))?;
+                Some(m.objects().get(self.object.index())?.standing(m.surface(*support)?, &at, yaw))
             }
         }
     }

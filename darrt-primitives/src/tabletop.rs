@@ -64,12 +64,13 @@ pub struct ObjectFriction {
     pub fingers: f64,
 }
 
-/// A support surface and the fixed bodies under it, which what stands on it touches.
+/// What objects stand on and are pushed across without meeting an edge: a surface, or several that lie flush as one, and the
+/// fixed bodies under it, which what stands on it touches.
 #[derive(Debug, Clone)]
 pub struct Support {
-    /// The polygon.
+    /// The surface.
     pub surface: SupportSurface,
-    /// Names of the fixed bodies whose top it is.
+    /// Names of the fixed bodies whose tops it is.
     pub bodies: Vec<Arc<str>>,
 }
 

@@ -56,6 +56,25 @@ impl SupportSurface {
         lost(self, 0..counts[0]).max(lost(other, counts[0]..counts[1])) >= LEAST_SEAM || other.contains(&self.middle())
     }
 
+    /// Which surfaces lie flush, directly or by way of others of them: groups of indices, ascending, in the order of their
+    /// first ones.
+    pub fn flush_groups(surfaces: &[&Self]) -> Vec<Vec<usize>> {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for (index, surface) in surfaces.iter().enumerate() {
+            let meets = |group: &Vec<usize>| {
+                group.iter().filter_map(|other| surfaces.get(*other)).any(|other| surface.is_flush_with(other))
+            };
+            let (mut met, mut others): (Vec<_>, Vec<_>) = std::mem::take(&mut groups).into_iter().partition(meets);
+            met.push(vec![index]);
+            let mut group: Vec<usize> = met.into_iter().flatten().collect();
+            group.sort_unstable();
+            others.push(group);
+            others.sort_unstable();
+            groups = others;
+        }
+        groups
+    }
+
     /// The middle of the first tile.
     fn middle(&self) -> Point2<f64> {
         self.tiles

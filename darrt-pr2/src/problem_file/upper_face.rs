@@ -5,7 +5,7 @@
 
 use darrt_geom::clearance::between;
 use darrt_geom::{Body, FixedBody, GeomError, Shape, SupportSurface, TriangleMesh};
-use nalgebra::{Isometry3, Point2, Point3, Vector2, Vector3};
+use nalgebra::{Isometry3, Point2, Point3, Vector3};
 use rand::SeedableRng as _;
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -82,6 +82,18 @@ fn steps_wide_gaps_and_corners_do_not_join() {
 }
 
 #[test]
+fn groups_hold_together_by_way_of_others() {
+    let boards = [
+        board("a", [0.0, 0.0], [1.0, 1.0]),
+        board("far", [5.0, 0.0], [6.0, 1.0]),
+        board("c", [2.0, 0.0], [3.0, 1.0]),
+        board("b", [1.0, 0.0], [2.0, 1.0]),
+    ];
+    assert_eq!(SupportSurface::flush_groups(&boards.iter().collect::<Vec<_>>()), [vec![0, 2, 3], vec![1]]);
+    assert!(SupportSurface::flush_groups(&[]).is_empty());
+}
+
+#[test]
 fn one_surface_is_joined_to_itself_and_none_to_nothing() {
     let left = board("left", [0.0, 0.0], [1.0, 1.0]);
     assert_eq!(SupportSurface::joined("left", &[&left]).unwrap(), left);
