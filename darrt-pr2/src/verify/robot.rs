@@ -126,6 +126,26 @@ impl Robot {
         self.solids.iter().enumerate().filter(move |(_, solid)| solid.link == link).map(|(index, _)| index)
     }
 
+    /// The height of the lowest point of a solid that no joint moves, above the robot's root: the base keeps it while it
+    /// drives. `None` for a solid that a joint moves.
+    pub(super) fn lowest_m(&self, solid: usize) -> Option<f64> {
+        let LinkSolid { link, link_from_solid, solid } = self.solids.get(solid)?;
+        let (mut root_from_link, mut link) = (Isometry3::identity(), *link);
+        while let Some(parent) = self.tree.parent(link) {
+            if !matches!(self.tree.motion(link)?, LinkMotion::Fixed) {
+                return None;
+            }
+            root_from_link = self.tree.parent_from_link(link)? * root_from_link;
+            if parent == link {
+                break;
+            }
+            link = parent;
+        }
+        let root_from_solid = root_from_link * link_from_solid;
+        let down = root_from_solid.rotation.inverse() * -Vector3::z();
+        Some(root_from_solid.translation.z - solid.shape()?.support_extent(&down))
+    }
+
     /// Writes the pose of every link in the frame of the robot's root.
     pub(super) fn link_poses(&self, joints: &[f64], out: &mut Vec<Isometry3<f64>>) {
         out.resize(self.tree.link_count(), Isometry3::identity());

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use darrt_geom::Shape;
 use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::approach::{Movers, Speeds};
@@ -127,7 +128,13 @@ impl Stage {
             |a, b, kind| pairs.push(Pair { a, b, kind, rule: Rule::Apart, across: Vector3::zeros(), apart_m: 0.0 });
         for (i, solid) in robot.solids.iter().enumerate() {
             (0..objects).for_each(|o| add(i, links + o, PairKind::LinkObject { link: solid.link, object: o }));
-            (first_fixed..solids.len()).for_each(|f| add(i, f, PairKind::Other));
+            let lowest_m = robot.lowest_m(i);
+            for f in first_fixed..solids.len() {
+                // What the base carries at a height of its own never comes nearer to a plane that it drives on.
+                if lowest_m.is_none_or(|lowest_m| !lies_below(&solids[f], &poses[f], lowest_m)) {
+                    add(i, f, PairKind::Other);
+                }
+            }
         }
         robot.self_pairs.iter().for_each(|&(a, b)| add(a, b, PairKind::Other));
         for o in 0..objects {
@@ -403,6 +410,16 @@ impl Stage {
 }
 
 /// Where a solid of the robot sits: its link, its pose there, and the centre of its ball there.
+/// How far a wheel may press into the floor that it stands on, metres: what rounding may do.
+const FLOOR_SLACK_M: f64 = 1e-9;
+
+/// Is the solid a half space under a level plane, no higher than `height_m`?
+fn lies_below(solid: &Solid, pose: &Isometry3<f64>, height_m: f64) -> bool {
+    let Some(Shape::HalfSpace { normal, .. }) = solid.shape() else { return false };
+    let normal = pose.rotation * normal.into_inner();
+    normal == Vector3::z() && pose.translation.z <= height_m + FLOOR_SLACK_M
+}
+
 fn mount(solid: &LinkSolid) -> (usize, Isometry3<f64>, Point3<f64>) {
     (solid.link, solid.link_from_solid, solid.solid.world_centre(&solid.link_from_solid))
 }
