@@ -19,12 +19,14 @@ pub trait Reroute<D: Domain>: Send + Sync {
     /// May this instance go any way between its ends? A transit may; a push, an approach or a pick may not.
     fn is_free_to_turn(&self, instance: &Instance<D>) -> bool;
 
-    /// Another instance with the same ends as `instance`, which begins at `from` and is blocked. `None` if the instance
-    /// must go as it does (a push, an approach), or if no way was found with the effort allowed.
+    /// Another instance with the same ends as `instance`, which begins at `from` and is blocked with this `care`
+    /// ([`Validity::most_care`]). `None` if the instance must go as it does (a push, an approach), or if no way was found with
+    /// the effort allowed.
     fn reroute(
         &self,
         m: &D,
         validity: &dyn Validity<D>,
+        care: usize,
         instance: &Instance<D>,
         from: &State<D>,
         rng: &mut dyn Rng,

@@ -25,7 +25,7 @@ pub enum Unsettled<D: Domain> {
 }
 
 /// Steps that begin at `here`, every motion judged: one that is blocked goes another way between its ends if it may turn
-/// aside. Without [`ExtendOptions::defer`](crate::extend::ExtendOptions::defer) they have been judged before and stay. Only
+/// aside. What may turn aside goes with as much [care](crate::validity::Validity::most_care) as a way is found for. Without [`ExtendOptions::defer`](crate::extend::ExtendOptions::defer) they have been judged before and stay. Only
 /// a cancellation stops it: a plan that was found in time is worth the rest.
 ///
 /// # Errors
@@ -49,12 +49,20 @@ pub fn settle<D: Domain>(
         if interrupt.stop() == Some(Stop::Cancelled) {
             return Err(Unsettled::Cancelled);
         }
-        let free = validity.free_prefix(m, &step.instance, &here);
-        if let Some(blame) = free.blame.filter(|_| free.fraction < step.until) {
-            let turns = reroute.filter(|r| r.is_free_to_turn(&step.instance));
-            let around = turns.and_then(|r| r.reroute(m, validity, &step.instance, &here, rng)).map(Arc::new);
-            let free = around.filter(|around| validity.free_prefix(m, around, &here).blame.is_none());
-            step.instance = free.ok_or_else(|| Unsettled::Blocked(Arc::clone(&step.instance), blame))?;
+        let turns = reroute.filter(|r| r.is_free_to_turn(&step.instance));
+        let most = turns.map_or(0, |_| validity.most_care());
+        for care in (0..=most).rev() {
+            let free = validity.free_prefix_with(care, m, &step.instance, &here);
+            let Some(blame) = free.blame.filter(|_| free.fraction < step.until) else { break };
+            let around = turns.and_then(|r| r.reroute(m, validity, care, &step.instance, &here, rng));
+            match around.filter(|around| validity.free_prefix_with(care, m, around, &here).blame.is_none()) {
+                Some(around) => {
+                    step.instance = Arc::new(around);
+                    break;
+                }
+                None if care == 0 => return Err(Unsettled::Blocked(Arc::clone(&step.instance), blame)),
+                None => {}
+            }
         }
         here = step.instance.at(m, step.until, &here);
         Ok(step)

@@ -89,6 +89,7 @@ impl FreePrefix {
 /// - `free_prefix` agrees with `check` on every state of the prefix.
 /// - `blame` names bodies that really touch (or come nearer than the stated clearance).
 /// - Enlarging an obstacle never makes an invalid state valid.
+/// - What is free with more care is free with less; a care of 0 are the rules.
 pub trait Validity<D: Domain>: Send + Sync {
     /// Is one state valid when `contacts` may touch?
     ///
@@ -105,6 +106,27 @@ pub trait Validity<D: Domain>: Send + Sync {
     /// How far is the motion of `instance` free? The whole motion is handed over so that the
     /// implementation may batch, bound and reorder; it must not allocate per state.
     fn free_prefix(&self, m: &D, instance: &Instance<D>, from: &State<D>) -> FreePrefix;
+
+    /// The most care there is. A care of 0 are the rules that every plan keeps; with more of it a state or a motion also
+    /// keeps what plans keep where they can, for instance a wider margin.
+    fn most_care(&self) -> usize {
+        0
+    }
+
+    /// [`Validity::check`] with a care of at most [`Validity::most_care`].
+    ///
+    /// # Errors
+    /// The [`Blame`].
+    fn check_with(&self, care: usize, m: &D, state: &State<D>, contacts: &D::Contacts) -> Result<(), Blame> {
+        let _ = care;
+        self.check(m, state, contacts)
+    }
+
+    /// [`Validity::free_prefix`] with a care of at most [`Validity::most_care`].
+    fn free_prefix_with(&self, care: usize, m: &D, instance: &Instance<D>, from: &State<D>) -> FreePrefix {
+        let _ = care;
+        self.free_prefix(m, instance, from)
+    }
 }
 
 /// Everything is valid: for problems without obstacles, and for tests.

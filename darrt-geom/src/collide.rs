@@ -54,8 +54,37 @@ pub struct Query<'a> {
     pub allowed: &'a AllowedContacts,
     /// Pairs nearer than this are hits, in metres. Pairs nearer than 1e-7 m touch, which always is a hit.
     pub clearance: f64,
+    /// Pairs that may be nearer than that; of several that name a pair the first counts.
+    pub closer: &'a [Closer],
     /// No need to know bounds above this, in metres. Small values make queries fast.
     pub cap: f64,
+}
+
+/// Pairs that may be nearer than the clearance of a query.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Closer {
+    /// One body of a pair is in here,
+    pub ones: BodySet,
+    /// and the other one in here.
+    pub others: BodySet,
+    /// Such pairs are hits when they are nearer than this, in metres; more than the clearance of the query counts as that.
+    pub clearance: f64,
+}
+
+impl Closer {
+    #[inline]
+    fn names(&self, a: BodyIndex, b: BodyIndex) -> bool {
+        self.ones.contains(a) && self.others.contains(b) || self.ones.contains(b) && self.others.contains(a)
+    }
+}
+
+impl Query<'_> {
+    /// The clearance of one pair, in metres.
+    #[inline]
+    pub fn clearance_of(&self, a: BodyIndex, b: BodyIndex) -> f64 {
+        let closer = self.closer.iter().find(|closer| closer.names(a, b));
+        closer.map_or(self.clearance, |closer| closer.clearance.min(self.clearance))
+    }
 }
 
 /// A registered body.
@@ -80,7 +109,7 @@ struct Registered {
 /// # Laws
 /// With o(a, b) the distance the [`crate::oracle`] finds: a query never returns more than the least o over the tested pairs
 /// (to 1e-9 m); it never returns `Ok` when some tested pair intersects; when every tested pair of boxes and balls is farther apart
-/// than the clearance, it returns `Ok`.
+/// than its clearance, it returns `Ok`.
 #[derive(Debug, Clone)]
 pub struct CollisionModel {
     bodies: Vec<Registered>,
@@ -232,7 +261,7 @@ impl CollisionModel {
         clearance: f64,
         cap: f64,
     ) -> Result<f64, Hit> {
-        self.lower_bound(scratch, &Query { moved, against: &BodySet::ALL, allowed, clearance, cap })
+        self.lower_bound(scratch, &Query { moved, against: &BodySet::ALL, allowed, clearance, closer: &[], cap })
     }
 
     /// [`Self::clearance`] with all its choices.
@@ -244,6 +273,30 @@ impl CollisionModel {
         let start = query.cap.max(query.clearance);
         let found = self.scan(scratch, query, start)?;
         Ok(found.min(query.cap).max(0.0))
+    }
+
+    /// Distance of two bodies in metres, at their present poses; 0 when they touch or overlap, or one has no sound pose. From
+    /// `enough` on any lower bound of it that is at least `enough`. Whether the pair is tested does not matter.
+    pub fn distance_between(&self, scratch: &Scratch, a: BodyIndex, b: BodyIndex, enough: f64) -> f64 {
+        let poses = &scratch.poses;
+        let (Some(of_a), Some(of_b)) = (self.bodies.get(a.get()), self.bodies.get(b.get())) else { return 0.0 };
+        let is_fitting = poses.placed.len() == self.solids.len() && poses.world_from_body.len() == self.bodies.len();
+        if !is_fitting || [a, b].iter().any(|body| poses.unsound.contains(*body)) {
+            return 0.0;
+        }
+        let mut least = f64::INFINITY;
+        for i in of_a.solids.clone() {
+            for j in of_b.solids.clone() {
+                least = least.min(self.gap_between(poses, (i, j), enough));
+            }
+        }
+        for (plane, other) in self.planes.iter().flat_map(|plane| [(plane, (a, of_b)), (plane, (b, of_a))]) {
+            if plane.body == other.0 {
+                let heights = other.1.solids.clone().map(|i| self.height_over(poses, i, plane, f64::INFINITY));
+                least = heights.fold(least, f64::min);
+            }
+        }
+        least.max(0.0)
     }
 
     /// A ball around the body in its own frame: centre and radius in metres. `None` for a body without a bounded solid.

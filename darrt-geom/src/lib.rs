@@ -39,7 +39,7 @@ pub use body_set::{BodyIndex, BodySet, MAXIMUM_BODIES};
 pub use bounded_file::FileError;
 pub use check::{MAXIMUM_LENGTH, MINIMUM_LENGTH};
 pub use clearance::Clearance;
-pub use collide::{CollisionModel, CollisionModelBuilder, Hit, Query, Scratch};
+pub use collide::{Closer, CollisionModel, CollisionModelBuilder, Hit, Query, Scratch};
 pub use error::GeomError;
 pub use hull::ConvexHull;
 pub use mesh::TriangleMesh;

@@ -28,6 +28,7 @@ pub mod goal_means;
 pub mod grasp_families;
 pub mod gripper;
 pub mod model;
+mod near_pairs;
 mod one_group;
 pub mod pick;
 pub mod picture;

@@ -19,6 +19,7 @@ use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
 use darrt_core::space::Place;
 use darrt_core::verify::{Refusal, Solution, Verified, Verifier};
 use darrt_primitives::detour::Detour;
+use darrt_primitives::surroundings::NearPair;
 use darrt_primitives::validity::SceneValidity;
 
 use crate::export::Exporter;
@@ -155,6 +156,8 @@ impl Verifier<World> for FileVerifier {
 pub struct Prepared {
     /// The planner's problem.
     pub problem: Problem<World>,
+    /// What the problem itself puts nearer to each other than the least margin.
+    pub near: Vec<NearPair>,
     exporter: Arc<Exporter>,
 }
 
@@ -179,7 +182,7 @@ fn prepare_watched(request: &PlanRequest, cancel: &Cancel, watch: &Arc<Stopwatch
     let file = &request.problem;
     check_companions(file)?;
     crate::goal_means::check_means(file)?;
-    let Built { world, start, goal, scene } = world::build_with(file, |robot| {
+    let Built { world, start, goal, scene, near } = world::build_with(file, |robot| {
         if request.bases_from_reachability { robot.with_bases_from_reachability() } else { robot }
     })?;
     let validity = SceneValidity::new(&world);
@@ -195,7 +198,7 @@ fn prepare_watched(request: &PlanRequest, cancel: &Cancel, watch: &Arc<Stopwatch
         validity: Box::new(Timed { part: validity, watch: Arc::clone(watch) }),
         verifier: Box::new(verifier),
     })?;
-    Ok(Prepared { problem, exporter })
+    Ok(Prepared { problem, near, exporter })
 }
 
 /// Plans. Stopping without a plan is a result, not an error.
@@ -289,7 +292,8 @@ fn result(
 /// A smoother plan keeps what the search keeps; one that is chosen for its clearance gives none away.
 fn smoothing(request: &PlanRequest, m: &World) -> SmoothOptions {
     let is_for_clearance = request.improve == Some(Cost::Clearance);
-    let clearance_m = if is_for_clearance { f64::INFINITY } else { m.surroundings().strictness().clearance_m };
+    let wanted_m = m.settings().safety.robot_margin_m;
+    let clearance_m = if is_for_clearance { f64::INFINITY } else { wanted_m };
     SmoothOptions { attempts: request.smooth, clearance_m }
 }
 

@@ -173,10 +173,28 @@ impl<V: Validity<World>> Validity<World> for Timed<V> {
     }
 
     fn free_prefix(&self, m: &World, instance: &Instance<World>, from: &WorldState) -> FreePrefix {
+        self.free_prefix_with(0, m, instance, from)
+    }
+
+    fn most_care(&self) -> usize {
+        self.part.most_care()
+    }
+
+    fn check_with(
+        &self,
+        care: usize,
+        m: &World,
+        state: &WorldState,
+        contacts: &<World as darrt_core::domain::Domain>::Contacts,
+    ) -> Result<(), Blame> {
+        self.part.check_with(care, m, state, contacts)
+    }
+
+    fn free_prefix_with(&self, care: usize, m: &World, instance: &Instance<World>, from: &WorldState) -> FreePrefix {
         let add = |sums: &mut Sums, spent: Duration| {
             sums.primitives.entry(instance.label).or_default().collision_s += spent.as_secs_f64();
         };
-        self.watch.timed(|| self.part.free_prefix(m, instance, from), add)
+        self.watch.timed(|| self.part.free_prefix_with(care, m, instance, from), add)
     }
 }
 
@@ -189,6 +207,7 @@ impl Reroute<World> for Timed<Box<dyn Reroute<World>>> {
         &self,
         m: &World,
         validity: &dyn Validity<World>,
+        care: usize,
         instance: &Instance<World>,
         from: &WorldState,
         rng: &mut dyn Rng,
@@ -196,7 +215,7 @@ impl Reroute<World> for Timed<Box<dyn Reroute<World>>> {
         let add = |sums: &mut Sums, spent: Duration| {
             sums.primitives.entry(instance.label).or_default().reroute_s += spent.as_secs_f64();
         };
-        self.watch.timed(|| self.part.reroute(m, validity, instance, from, rng), add)
+        self.watch.timed(|| self.part.reroute(m, validity, care, instance, from, rng), add)
     }
 }
 

@@ -12,6 +12,7 @@ use darrt_primitives::manipulator::{Configuration, Manipulator};
 use darrt_primitives::mode::Mode;
 use darrt_primitives::object_space::{ObjectSpace, ObjectSpaceParts};
 use darrt_primitives::push::edge_stop::{EdgeRule, RimReach};
+use darrt_primitives::surroundings::NearPair;
 use darrt_primitives::tabletop::{
     ActionSettings, Movable, ObjectFriction, PlaceSettings, PushSettings, Tabletop, TabletopState,
 };
@@ -52,6 +53,8 @@ pub struct Built {
     pub goal: TabletopGoal,
     /// The fixed bodies and the surfaces.
     pub scene: Scene,
+    /// What the problem itself puts nearer to each other than the least margin.
+    pub near: Vec<NearPair>,
 }
 
 /// Builds robot, domain, start and goal.
@@ -91,13 +94,14 @@ pub fn build_with(problem: &ProblemFile, change: impl FnOnce(Pr2) -> Pr2) -> Res
     let goal = goal(problem, &geometry, &supports)?;
     let rests_on = geometry.objects.iter().enumerate().map(|(index, o)| supports.holding(index, o.surface));
     let mode = Mode::resting(rests_on, TRAVEL_GAP);
-    let world = World::new(robot, space, objects, supports.all, geometry.scene.bodies(), settings)?;
+    let mut world = World::new(robot, space, objects, supports.all, geometry.scene.bodies(), settings)?;
     let start = State {
         robot: Configuration { base: problem.robot.base, arm },
         objects: geometry.objects.iter().map(|o| o.world_from_object).collect(),
         mode,
     };
-    Ok(Built { world, start, goal, scene: geometry.scene })
+    let near = crate::near_pairs::accept(&mut world, &start, &goal);
+    Ok(Built { world, start, goal, scene: geometry.scene, near })
 }
 
 /// The primitives that the problem allows, in the order of the paper.

@@ -15,7 +15,7 @@ use crate::action::label;
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::Contacts;
-use crate::surroundings::Worker;
+use crate::surroundings::{Strict, Worker};
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// How hard the search tries.
@@ -81,6 +81,7 @@ impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
         &self,
         m: &Tabletop<M>,
         validity: &dyn Validity<Tabletop<M>>,
+        care: usize,
         instance: &Instance<Tabletop<M>>,
         from: &TabletopState<M>,
         rng: &mut dyn Rng,
@@ -97,12 +98,12 @@ impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
         };
         let states_left = if part == Part::Arm { self.arm_states } else { self.base_states };
         // An end that is itself too near to something cannot be left, whichever way.
-        validity.check(m, &inside, &Contacts::default()).ok()?;
-        validity.check(m, &end, &Contacts::default()).ok()?;
+        validity.check_with(care, m, &inside, &Contacts::default()).ok()?;
+        validity.check_with(care, m, &end, &Contacts::default()).ok()?;
         let around = m.surroundings();
         let way = around.with_worker(|worker| {
             around.pose_all(m.manipulator(), &inside, worker);
-            around.allow(&inside, &Contacts::default(), &mut worker.allowed);
+            around.set_rules(&inside, &Contacts::default(), Strict::with(care), worker);
             let moved = around.moved(&inside, &end);
             // A robot that drives with its arm at rest moves as one body, with what it holds.
             let against = if part == Part::Base { BodySet::ALL.difference(&moved) } else { BodySet::ALL };

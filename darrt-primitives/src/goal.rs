@@ -117,6 +117,11 @@ impl TabletopGoal {
     pub fn new(groups: Vec<Vec<ObjectGoal>>) -> Self {
         Self { groups }
     }
+
+    /// Of every group one must be met.
+    pub fn groups(&self) -> &[Vec<ObjectGoal>] {
+        &self.groups
+    }
 }
 
 impl<M: Manipulator> Goal<Tabletop<M>> for TabletopGoal {

@@ -10,7 +10,7 @@ use darrt_core::state::ObjectId;
 use darrt_core::validity::{Blame, BlockKind};
 use darrt_geom::allowed::{AllowedContacts, ContactReason};
 use darrt_geom::body_set::{BodyIndex, BodySet};
-use darrt_geom::collide::{CollisionModel, Hit, Scratch};
+use darrt_geom::collide::{Closer, CollisionModel, Hit, Scratch};
 use darrt_geom::error::GeomError;
 use darrt_geom::scene::FixedBody;
 use darrt_geom::shape::Shape;
@@ -21,35 +21,24 @@ use crate::mode::{Contacts, TouchReason};
 use crate::tabletop::{Movable, Support, TabletopState};
 
 mod known;
+mod margins;
 mod question;
 mod room;
 
 use known::Known;
+pub(crate) use margins::Strict;
+use margins::{Keep, UNSEEN_M};
+pub use margins::{NearPair, Strictness};
 pub use room::Hand;
-
-/// How strict the check is; metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Strictness {
-    /// Bodies nearer than this collide. It must be positive: a motion gives a small part of it away between the states
-    /// looked at, so that it advances however near it passes.
-    pub clearance_m: f64,
-    /// Distances beyond this are not told apart: the farthest that a motion advances at once.
-    pub cap_m: f64,
-}
-
-impl Default for Strictness {
-    fn default() -> Self {
-        Self { clearance_m: 0.002, cap_m: 0.2 }
-    }
-}
-
-/// Part of the clearance that a motion keeps between two states looked at, where it may come nearer than at them.
-pub(crate) const KEPT_BETWEEN: f64 = 0.99;
 
 /// Bodies of the robot, the objects and the scene, and the rules of touching.
 pub struct Surroundings {
     model: CollisionModel,
     strictness: Strictness,
+    /// How much farther apart than their clearance pairs are at the states looked at, metres.
+    unseen_m: f64,
+    /// Pairs that begin, or end, nearer than their margin.
+    exceptions: Vec<Closer>,
     links: Vec<BodyIndex>,
     objects: Vec<BodyIndex>,
     fingers: Vec<BodyIndex>,
@@ -70,7 +59,8 @@ pub(crate) struct Worker {
     scratch: Scratch,
     /// Where the links and then the objects stand.
     pub(crate) poses: Vec<Isometry3<f64>>,
-    pub(crate) allowed: AllowedContacts,
+    allowed: AllowedContacts,
+    keep: Keep,
     /// By body: metres that it travels per unit of the motion's parameter.
     pub(crate) reach: Vec<f64>,
     /// By link: metres that it travels on one leg of a motion.
@@ -131,6 +121,8 @@ impl Surroundings {
             finger_links: fingers,
             model: model.build(),
             strictness,
+            unseen_m: UNSEEN_M,
+            exceptions: Vec::new(),
             links,
             objects,
             base_from_link: OnceLock::new(),
@@ -141,9 +133,21 @@ impl Surroundings {
     /// The same for the objects alone: no pair with a link is tested, as if the robot could pass through everything.
     #[must_use]
     pub fn without_robot(&self) -> Self {
+        self.with_model(self.model.without_pairs_of(&self.all_links))
+    }
+
+    /// The same once more.
+    pub(crate) fn copy(&self) -> Self {
+        self.with_model(self.model.clone())
+    }
+
+    /// The same with another model of the same bodies.
+    fn with_model(&self, model: CollisionModel) -> Self {
         Self {
-            model: self.model.without_pairs_of(&self.all_links),
+            model,
             strictness: self.strictness,
+            unseen_m: self.unseen_m,
+            exceptions: self.exceptions.clone(),
             links: self.links.clone(),
             objects: self.objects.clone(),
             fingers: self.fingers.clone(),
@@ -161,6 +165,12 @@ impl Surroundings {
     /// The collision model, for reports.
     pub fn model(&self) -> &CollisionModel {
         &self.model
+    }
+
+    /// How much farther apart than their clearance pairs are at the states looked at, metres: what a motion may give away
+    /// between them.
+    pub(crate) fn unseen_m(&self) -> f64 {
+        self.unseen_m
     }
 
     /// How strict the check is.
@@ -189,6 +199,7 @@ impl Surroundings {
             reach: vec![0.0; poses.len()],
             poses,
             allowed: AllowedContacts::none(),
+            keep: Keep::default(),
             link_travel: vec![0.0; self.links.len()],
             known: Known::default(),
         }
@@ -251,13 +262,21 @@ impl Surroundings {
         }
     }
 
-    /// What may touch in this mode during an instance with these contacts.
-    pub(crate) fn allow<M: Manipulator>(
+    /// What may touch, and how far all else keeps, in this mode during an instance with these contacts: what is asked from
+    /// here on.
+    pub(crate) fn set_rules<M: Manipulator>(
         &self,
         state: &TabletopState<M>,
         contacts: &Contacts,
-        out: &mut AllowedContacts,
+        strict: Strict,
+        worker: &mut Worker,
     ) {
+        self.allow(state, contacts, &mut worker.allowed);
+        self.keep(state, contacts, strict, &mut worker.keep);
+    }
+
+    /// What may touch in this mode during an instance with these contacts.
+    fn allow<M: Manipulator>(&self, state: &TabletopState<M>, contacts: &Contacts, out: &mut AllowedContacts) {
         *out = AllowedContacts::none();
         for (i, object) in self.objects.iter().enumerate() {
             if let Some(under) = state.mode.support_of(ObjectId::new(i)).and_then(|s| self.supports.get(s.index())) {

@@ -19,7 +19,7 @@ use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Held, Mode, SurfaceId};
 use crate::object_space::ObjectSpace;
 use crate::push::edge_stop::{EdgeRule, RimReach};
-use crate::surroundings::{Strictness, Surroundings};
+use crate::surroundings::{NearPair, Strictness, Surroundings};
 
 /// A rigid object that can be manipulated, besides its configuration space.
 pub struct Movable {
@@ -198,10 +198,24 @@ impl<M: Manipulator> Tabletop<M> {
         settings: ActionSettings<M::Joints>,
     ) -> Result<Self, GeomError> {
         let (objects, movables): (_, Vec<Movable>) = objects.into_iter().unzip();
-        let surroundings = Surroundings::new(&*manipulator, &movables, &supports, fixed, Strictness::default())?;
+        let strictness = Strictness { safety: settings.safety, ..Strictness::default() };
+        let surroundings = Surroundings::new(&*manipulator, &movables, &supports, fixed, strictness)?;
         let surroundings = Arc::new(surroundings);
         let movables = movables.into();
         Ok(Self { manipulator, robot, objects, movables, supports, settings, surroundings })
+    }
+
+    /// Pairs of bodies that are nearer than the least margin in `state`, the start, and do not touch, may be as near from
+    /// here on, give or take half a millimetre by which a hand may stray from a line. The same for pairs without the robot
+    /// in each of the `goals`. Which pairs these are.
+    #[must_use]
+    pub fn accept_near(&mut self, start: &TabletopState<M>, goals: &[TabletopState<M>]) -> Vec<NearPair> {
+        let mut surroundings = self.surroundings.copy();
+        let states = std::iter::once((start, false)).chain(goals.iter().map(|goal| (goal, true)));
+        let robot = &*self.manipulator;
+        let found = states.flat_map(|(state, is_at_goal)| surroundings.accept_near(robot, state, is_at_goal)).collect();
+        self.surroundings = Arc::new(surroundings);
+        found
     }
 
     /// Everything that can be touched, and what may touch what.

@@ -23,7 +23,7 @@ use nalgebra::{Isometry3, Point2};
 use crate::leg::Leg;
 use crate::manipulator::Manipulator;
 use crate::mode::Contacts;
-use crate::surroundings::{KEPT_BETWEEN, Surroundings, Worker};
+use crate::surroundings::{Strict, Surroundings, Worker};
 use crate::tabletop::{Tabletop, TabletopState};
 use crate::tilt::UNSEEN_RAD;
 
@@ -151,6 +151,7 @@ impl SceneValidity {
         m: &Tabletop<M>,
         instance: &Instance<Tabletop<M>>,
         from: &TabletopState<M>,
+        care: usize,
         worker: &mut Worker,
     ) -> FreePrefix {
         let around = &*self.surroundings;
@@ -160,7 +161,7 @@ impl SceneValidity {
         // The entry is judged with everything that this instance may touch: exemptions of the last one are over.
         // Its mode is that of the interior, in which the motion begins at once.
         instance.motion.at_into(m, f64::MIN_POSITIVE, &mut here);
-        around.allow(&here, &instance.contacts, &mut worker.allowed);
+        around.set_rules(&here, &instance.contacts, Strict::with(care), worker);
         around.pose_all(robot, &here, worker);
         if let Some(hit) = around.first_hit(worker) {
             return FreePrefix::blocked(0.0, around.blame(&hit));
@@ -187,7 +188,7 @@ impl SceneValidity {
         // Letting go or closing changes the gripper: the final state is judged in its own mode.
         instance.motion.at_into(m, 1.0, &mut here);
         around.pose_all(robot, &here, worker);
-        around.allow(&here, &instance.contacts, &mut worker.allowed);
+        around.set_rules(&here, &instance.contacts, Strict::with(care), worker);
         match around.first_hit(worker) {
             None => FreePrefix::FREE,
             // The end itself is blocked: everything before it is free.
@@ -208,10 +209,8 @@ impl SceneValidity {
         worker: &mut Worker,
     ) -> Result<(), (f64, Blame)> {
         let around = &*self.surroundings;
-        let strictness = around.strictness();
         // Farther than this no pair is told apart; so far every pair may come nearer unseen.
-        let unseen_m = (1.0 - KEPT_BETWEEN) * strictness.clearance_m;
-        let (cap, least) = (strictness.cap_m / leg.fastest, unseen_m / leg.fastest);
+        let (cap, least) = (around.strictness().cap_m / leg.fastest, around.unseen_m() / leg.fastest);
         // Nothing touches up to here, and the rules were last found kept there.
         let (mut free, mut kept) = (t, t);
         let tilting = m.tilt_travel_rad(&here.robot, &next.robot) / (leg.end - leg.begin);
@@ -236,8 +235,7 @@ impl SceneValidity {
 
 impl<M: Manipulator> Validity<Tabletop<M>> for SceneValidity {
     fn check(&self, m: &Tabletop<M>, state: &TabletopState<M>, contacts: &Contacts) -> Result<(), Blame> {
-        self.check_rules(m, state)?;
-        self.surroundings.check_on_the_way(m.manipulator(), state, contacts)
+        self.check_with(0, m, state, contacts)
     }
 
     fn without_robot(&self) -> Option<Arc<dyn Validity<Tabletop<M>>>> {
@@ -245,6 +243,32 @@ impl<M: Manipulator> Validity<Tabletop<M>> for SceneValidity {
     }
 
     fn free_prefix(&self, m: &Tabletop<M>, instance: &Instance<Tabletop<M>>, from: &TabletopState<M>) -> FreePrefix {
-        self.surroundings.with_worker(|worker| self.advance(m, instance, from, worker))
+        self.free_prefix_with(0, m, instance, from)
+    }
+
+    /// 2: all of the wanted margins, 1: half of them.
+    fn most_care(&self) -> usize {
+        self.surroundings.most_care()
+    }
+
+    fn check_with(
+        &self,
+        care: usize,
+        m: &Tabletop<M>,
+        state: &TabletopState<M>,
+        contacts: &Contacts,
+    ) -> Result<(), Blame> {
+        self.check_rules(m, state)?;
+        self.surroundings.check_at(m.manipulator(), state, contacts, Strict { care, is_between: true })
+    }
+
+    fn free_prefix_with(
+        &self,
+        care: usize,
+        m: &Tabletop<M>,
+        instance: &Instance<Tabletop<M>>,
+        from: &TabletopState<M>,
+    ) -> FreePrefix {
+        self.surroundings.with_worker(|worker| self.advance(m, instance, from, care, worker))
     }
 }

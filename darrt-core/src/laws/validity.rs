@@ -32,6 +32,8 @@ pub const BLAME_TEXT: &str = "validity.blame-text: a blame names both bodies and
 /// Exemptions.
 pub const EXEMPTIONS: &str =
     "validity.exemptions: contacts that may touch never make a valid state invalid, and end with the instance";
+/// Care.
+pub const CARE: &str = "validity.care: what is free with more care is free with less, and a care of 0 are the rules";
 /// Obstacles.
 pub const ENLARGED: &str = "validity.enlarged: enlarging an obstacle never makes an invalid state valid";
 /// The oracle.
@@ -39,7 +41,7 @@ pub const ORACLE: &str = "validity.oracle: what the fast check calls free, the e
 
 /// The laws of this file.
 pub const LAWS: &[&str] =
-    &[PURE, FRACTION, ONE_BY_ONE, CUT, BLAME_REAL, BLAME_NAMES, BLAME_TEXT, EXEMPTIONS, ENLARGED, ORACLE];
+    &[PURE, FRACTION, ONE_BY_ONE, CUT, BLAME_REAL, BLAME_NAMES, BLAME_TEXT, EXEMPTIONS, CARE, ENLARGED, ORACLE];
 
 /// How exactly a validity answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,6 +104,7 @@ impl<D: Domain> Trial<'_, D> {
         }
         self.exemptions(&bare)?;
         equal(PURE, &self.validity.free_prefix(self.m, self.instance, self.from), &free)?;
+        self.care(&free)?;
         self.cut(&free)
     }
 
@@ -166,6 +169,28 @@ impl<D: Domain> Trial<'_, D> {
                 equal(EXEMPTIONS, &with, before).map_err(|broken| broken.at(*t))?;
             }
             equal(PURE, &self.check(*t), &with).map_err(|broken| broken.at(*t))?;
+        }
+        Ok(())
+    }
+
+    /// Each care against the one below it, over the whole motion and state by state.
+    fn care(&self, free: &FreePrefix) -> Result<(), Broken> {
+        equal(CARE, &self.validity.free_prefix_with(0, self.m, self.instance, self.from), free)?;
+        let mut less = free.clone();
+        for care in 1..=self.validity.most_care() {
+            let more = self.validity.free_prefix_with(care, self.m, self.instance, self.from);
+            shape(&more)?;
+            let is_more = more.blame.is_none() && less.blame.is_some();
+            ensure(CARE, !is_more, || format!("free with care {care}; with less: {less:?}"), "free with less care")?;
+            for t in [0.0, 0.3, 0.5, more.fraction, 1.0] {
+                let (state, contacts) = (self.instance.at(self.m, t, self.from), &self.instance.contacts);
+                let [with_less, with_more] =
+                    [care - 1, care].map(|care| self.validity.check_with(care, self.m, &state, contacts));
+                let is_more = with_more.is_ok() && with_less.is_err();
+                let found = || format!("valid with care {care}; with less: {with_less:?}");
+                ensure(CARE, !is_more, found, "valid with less care").map_err(|broken| broken.at(t))?;
+            }
+            less = more;
         }
         Ok(())
     }

@@ -100,6 +100,7 @@ impl Reroute<World> for Around {
         &self,
         m: &World,
         _: &dyn Validity<World>,
+        _: usize,
         instance: &Instance<World>,
         from: &State<World>,
         _: &mut dyn Rng,

@@ -17,10 +17,10 @@ use darrt_core::search::Strategy;
 use darrt_core::settle::{Unsettled, settle};
 use darrt_core::shorten::ShortenOptions;
 use darrt_core::solve::solve;
-use darrt_core::state::State;
+use darrt_core::state::{ComponentSet, State};
 use darrt_core::testing::puck::{Setup, paper_strategy, problems};
 use darrt_core::tree::{Edge, NodeId, Tree};
-use darrt_core::validity::Validity;
+use darrt_core::validity::{Blame, BlockKind, FreePrefix, Validity};
 use rand::Rng;
 
 use super::support::{World, id, options, rng, robot_instance, small};
@@ -64,6 +64,7 @@ impl Reroute<World> for Above {
         &self,
         m: &World,
         _: &dyn Validity<World>,
+        _: usize,
         instance: &Instance<World>,
         from: &State<World>,
         _: &mut dyn Rng,
@@ -108,6 +109,76 @@ fn a_blocked_motion_goes_another_way_or_is_named() {
     let eager = ExtendOptions { defer: false, ..DEFER };
     let eager = Extender { options: &eager, ..straight };
     assert!(settle(&eager, &start, steps(&straight), &mut rng(0)).is_ok());
+}
+
+/// By the rules all is free; with a care of 1 only motions called "narrow" or "wide" are, with 2 only "wide" ones.
+struct Wary;
+
+impl Validity<World> for Wary {
+    fn check(&self, _: &World, _: &State<World>, _: &ComponentSet) -> Result<(), Blame> {
+        Ok(())
+    }
+
+    fn free_prefix(&self, _: &World, _: &Instance<World>, _: &State<World>) -> FreePrefix {
+        FreePrefix::FREE
+    }
+
+    fn most_care(&self) -> usize {
+        2
+    }
+
+    fn free_prefix_with(&self, care: usize, _: &World, instance: &Instance<World>, _: &State<World>) -> FreePrefix {
+        match (care, instance.label) {
+            (0, _) | (1, "narrow") | (_, "wide") => FreePrefix::FREE,
+            _ => {
+                let (first, second) = ("robot".into(), "margin".into());
+                FreePrefix::blocked(0.5, Blame { kind: BlockKind::Other, first, second, place: [0.0; 3] })
+            }
+        }
+    }
+}
+
+/// By care: what it finds another way for, called so.
+struct Finds([Option<&'static str>; 3]);
+
+impl Reroute<World> for Finds {
+    fn is_free_to_turn(&self, instance: &Instance<World>) -> bool {
+        instance.label == "go"
+    }
+
+    fn reroute(
+        &self,
+        m: &World,
+        _: &dyn Validity<World>,
+        care: usize,
+        instance: &Instance<World>,
+        from: &State<World>,
+        _: &mut dyn Rng,
+    ) -> Option<Instance<World>> {
+        self.0[care].map(|label| Instance { label, ..robot_instance(from, &instance.at(m, 1.0, from)) })
+    }
+}
+
+#[test]
+fn what_may_turn_aside_goes_with_as_much_care_as_a_way_is_found_for() {
+    let mut parts = small().puck_goal(0, [1.5, 1.5]).parts().unwrap();
+    parts.validity = Box::new(Wary);
+    let problem = Problem::new(parts).unwrap();
+    let start = problem.start().clone();
+    let there = State { robot: [1.0, 0.3], ..start.clone() };
+    let settled = |label, finds| {
+        let instance = Arc::new(Instance { label, ..robot_instance(&start, &there) });
+        let reroute = Finds(finds);
+        let extender =
+            Extender { problem: &problem, options: &DEFER, reroute: Some(&reroute), interrupt: Interrupt::NEVER };
+        settle(&extender, &start, [Step { instance, until: 1.0, primitive: 0 }], &mut rng(0)).unwrap()[0].instance.label
+    };
+    assert_eq!(settled("wide", [None; 3]), "wide");
+    assert_eq!(settled("go", [None, Some("narrow"), Some("wide")]), "wide");
+    assert_eq!(settled("go", [None, Some("narrow"), Some("narrow")]), "narrow", "what is found is judged");
+    assert_eq!(settled("go", [None, Some("narrow"), None]), "narrow");
+    assert_eq!(settled("go", [None; 3]), "go", "free by the rules");
+    assert_eq!(settled("push", [None, Some("narrow"), Some("wide")]), "push", "it must go as it does");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Yes or no: is every tested pair clear? For searches that ask about many states and need no reasons.
 
-use super::scan::too_near;
+use super::scan::{too_near, too_near_of};
 use super::watch::Other;
 use super::{CollisionModel, Poses, Query, Scratch};
 
@@ -18,8 +18,8 @@ impl CollisionModel {
             return false;
         }
         if let Some((own, other)) = scratch.met
-            && self.is_asked(query, own, other)
-            && self.meets(&scratch.poses, own, other, too_near(query))
+            && let Some(near) = self.asked_near(query, own, other)
+            && self.meets(&scratch.poses, own, other, near)
         {
             return false;
         }
@@ -27,15 +27,17 @@ impl CollisionModel {
         scratch.met.is_none()
     }
 
-    /// Whether the query asks about these two, and the model tests them.
-    fn is_asked(&self, query: &Query<'_>, own: usize, other: Other) -> bool {
+    /// Below which distance these two are too near; `None` if the query does not ask about them, or the model does not test
+    /// them.
+    fn asked_near(&self, query: &Query<'_>, own: usize, other: Other) -> Option<f64> {
         let partner = match other {
             Other::Solid(solid) => self.solids.get(solid).map(|solid| solid.body),
             Other::Plane(plane) => self.planes.get(plane).map(|plane| plane.body),
         };
-        let (Some(own), Some(partner)) = (self.solids.get(own), partner) else { return false };
-        let is_moved = query.moved.contains(own.body) || self.moving.contains(partner);
-        is_moved && self.is_tested(own.body, partner) && Self::asked(query, own.body, partner)
+        let (own, partner) = (self.solids.get(own)?.body, partner?);
+        let is_moved = query.moved.contains(own) || self.moving.contains(partner);
+        let is_asked = is_moved && self.is_tested(own, partner) && Self::asked(query, own, partner);
+        is_asked.then(|| too_near_of(query, own, partner))
     }
 
     fn meets(&self, poses: &Poses, own: usize, other: Other, near: f64) -> bool {
@@ -47,16 +49,17 @@ impl CollisionModel {
 
     fn first_met(&self, scratch: &mut Scratch, query: &Query<'_>) -> Option<Met> {
         let Scratch { poses, near: boxes, .. } = scratch;
-        let near = too_near(query);
+        let most = too_near(query);
         for body in query.moved.intersection(&self.moving).iter() {
             let registered = &self.bodies[body.get()];
-            self.fixed_boxes.near(&poses.balls.centre(body.get()), near + registered.radius, boxes);
+            self.fixed_boxes.near(&poses.balls.centre(body.get()), most + registered.radius, boxes);
             for found in &*boxes {
                 let other = self.fixed_solids[found.index];
                 let partner = self.solids[other].body;
                 if !registered.partners.contains(partner) || !Self::asked(query, body, partner) {
                     continue;
                 }
+                let near = too_near_of(query, body, partner);
                 let met = |own: &usize| self.meets(poses, *own, Other::Solid(other), near);
                 if let Some(own) = registered.solids.clone().find(met) {
                     return Some((own, Other::Solid(other)));
@@ -66,6 +69,7 @@ impl CollisionModel {
                 if !registered.partners.contains(plane.body) || !Self::asked(query, body, plane.body) {
                     continue;
                 }
+                let near = too_near_of(query, body, plane.body);
                 let met = |own: &usize| self.meets(poses, *own, Other::Plane(number), near);
                 if let Some(own) = registered.solids.clone().find(met) {
                     return Some((own, Other::Plane(number)));
@@ -75,8 +79,9 @@ impl CollisionModel {
         self.near_moving(
             poses,
             query,
-            |_| near,
+            |_| most,
             |a, b| {
+                let near = too_near_of(query, a, b);
                 self.bodies[a.get()].solids.clone().find_map(|own| {
                     let met = |other: &usize| self.meets(poses, own, Other::Solid(*other), near);
                     let other = self.bodies[b.get()].solids.clone().find(met)?;

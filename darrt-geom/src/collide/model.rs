@@ -198,8 +198,14 @@ mod tests {
         let model = builder.build();
         let mut scratch = model.scratch();
         let allowed = AllowedContacts::none();
-        let query =
-            Query { moved: &BodySet::ALL, against: &BodySet::ALL, allowed: &allowed, clearance: 0.01, cap: 0.0 };
+        let query = Query {
+            moved: &BodySet::ALL,
+            against: &BodySet::ALL,
+            allowed: &allowed,
+            clearance: 0.01,
+            closer: &[],
+            cap: 0.0,
+        };
         for (x, is_clear) in [(0.9, false), (1.1, true), (0.0, false)] {
             model.set_poses(&mut scratch, &[Isometry3::translation(x, 0.0, 0.0)]);
             assert_eq!(model.is_clear(&mut scratch, &query), is_clear, "{x}");

@@ -25,10 +25,16 @@ pub(super) struct Candidate {
     solids: (usize, usize),
 }
 
-/// Pairs nearer than this are hits.
+/// No pair farther apart than this is a hit.
 #[inline]
 pub(super) fn too_near(query: &Query<'_>) -> f64 {
     query.clearance.max(TOUCHING)
+}
+
+/// The two are a hit when they are nearer than this.
+#[inline]
+pub(super) fn too_near_of(query: &Query<'_>, a: BodyIndex, b: BodyIndex) -> f64 {
+    query.clearance_of(a, b).max(TOUCHING)
 }
 
 /// Distances from here on cannot lower `best`; never so little that a hit could be passed over.
@@ -139,9 +145,10 @@ impl CollisionModel {
                 if !registered.partners.contains(plane.body) || !Self::asked(query, body, plane.body) {
                     continue;
                 }
+                let near = too_near_of(query, body, plane.body);
                 for i in registered.solids.clone() {
                     let height = self.height_over(poses, i, plane, enough(query, best));
-                    if height < too_near(query) {
+                    if height < near {
                         return Err(hit_plane(poses, &self.solids[i], plane, height));
                     }
                     best = best.min(height);
@@ -171,7 +178,8 @@ impl CollisionModel {
             return Ok(best);
         }
         let (i, j) = candidate.solids;
-        let settled = self.settle(poses, (i, j), candidate.bound, enough, too_near(query));
+        let near = too_near_of(query, self.solids[i].body, self.solids[j].body);
+        let settled = self.settle(poses, (i, j), candidate.bound, enough, near);
         settled.map(|bound| best.min(bound)).map_err(|separation| self.hit(poses, (i, j), separation))
     }
 
@@ -213,6 +221,19 @@ impl CollisionModel {
             return Err(value);
         }
         Ok(value)
+    }
+
+    /// Distance of two solids in metres, or a lower bound of it that is at least `enough`; 0 when they touch or overlap.
+    pub(super) fn gap_between(&self, poses: &Poses, (i, j): (usize, usize), enough: f64) -> f64 {
+        let (a, b) = (&self.solids[i], &self.solids[j]);
+        let bound = (poses.placed[j].centre - poses.placed[i].centre).norm() - a.radius - b.radius;
+        if bound >= enough {
+            return bound;
+        }
+        match narrow::gap(&posed(poses, a), &posed(poses, b)) {
+            Gap::Closed => 0.0,
+            Gap::Open { distance, .. } => distance,
+        }
     }
 
     /// Two solids that are too near.

@@ -92,8 +92,24 @@ impl World {
 
     /// The judge's word over all tested pairs.
     fn judge(&self) -> Option<oracle::Finding> {
+        self.judge_of(|_, _| true)
+    }
+
+    /// The judge's word over the tested pairs that are asked for.
+    fn judge_of(&self, asked: impl Fn(usize, usize) -> bool) -> Option<oracle::Finding> {
         let posed: Vec<_> = self.bodies.iter().map(|(body, pose)| PosedBody { body, world_from_body: *pose }).collect();
-        oracle::nearest(&posed, &|i, j| i.min(j) >= self.moving).unwrap()
+        oracle::nearest(&posed, &|i, j| i.min(j) >= self.moving || !asked(i, j)).unwrap()
+    }
+
+    /// The judge's word over the pairs that these closer ones name, each at most once, and over the others: with the
+    /// clearance of each.
+    fn judge_each(&self, query: &Query<'_>) -> Vec<(f64, oracle::Finding)> {
+        let clearance = |i: usize, j: usize| {
+            let [a, b] = [i, j].map(|i| BodyIndex::new(u16::try_from(i).unwrap()));
+            query.clearance_of(a, b)
+        };
+        let kinds = query.closer.iter().map(|closer| closer.clearance.min(query.clearance)).chain([query.clearance]);
+        kinds.filter_map(|kind| Some((kind, self.judge_of(|i, j| clearance(i, j) == kind)?))).collect()
     }
 }
 
@@ -108,6 +124,15 @@ fn world(
         let named = moving.into_iter().chain(fixed).enumerate();
         let bodies = named.map(|(i, (parts, pose))| (Body::new(format!("b{i}"), parts).unwrap(), pose)).collect();
         World { bodies, moving: count }
+    })
+}
+
+/// Pairs of the first body that may be nearer, and all pairs of the second that may be nearer still.
+fn closer(clearances: [f64; 2]) -> [Closer; 2] {
+    [0, 1].map(|i| Closer {
+        ones: BodySet::from_iter([BodyIndex::new(i)]),
+        others: BodySet::ALL,
+        clearance: clearances[usize::from(i)],
     })
 }
 
@@ -138,6 +163,23 @@ proptest! {
     }
 
     #[test]
+    fn boxes_and_balls_are_decided_at_the_clearance_of_each_pair(
+        world in world(simple().boxed(), simple()), clearance in 0.0_f64..0.3, nearer in prop::array::uniform2(0.0_f64..0.3),
+    ) {
+        let (model, mut scratch) = world.model();
+        let (none, closer) = (AllowedContacts::none(), closer(nearer));
+        let query =
+            Query { moved: &BodySet::ALL, against: &BodySet::ALL, allowed: &none, clearance, closer: &closer, cap: 10.0 };
+        let found = model.lower_bound(&mut scratch, &query);
+        let judged = world.judge_each(&query);
+        if judged.iter().all(|(clearance, judged)| judged.distance > clearance + 1e-5) {
+            prop_assert!(found.is_ok(), "{judged:?} but {found:?}");
+        } else if judged.iter().any(|(clearance, judged)| judged.distance < clearance - 1e-5) {
+            prop_assert!(found.is_err(), "{judged:?} but {found:?}");
+        }
+    }
+
+    #[test]
     fn boxes_and_balls_are_decided_at_the_clearance(world in world(simple().boxed(), simple()), clearance in 0.0_f64..0.3) {
         let (model, mut scratch) = world.model();
         let found = model.clearance(&mut scratch, &BodySet::ALL, &AllowedContacts::none(), clearance, 10.0);
@@ -150,6 +192,22 @@ proptest! {
             if let Ok(bound) = found {
                 // Face-face pairs are exact; the worst the fifteen axes do to two boxes is well under a factor of two.
                 prop_assert!(bound > 0.5 * judged.distance - 1e-9, "{judged:?} but {bound}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_distance_of_two_bodies_is_the_judges(world in world(bounded().boxed(), any_shape()), enough in 0.0_f64..2.0) {
+        let (model, scratch) = world.model();
+        for a in model.moving().iter() {
+            for b in model.indices().filter(|b| *b != a) {
+                let judged = world.judge_of(|i, j| [a.get(), b.get()] == [i, j] || [b.get(), a.get()] == [i, j]).unwrap();
+                let found = model.distance_between(&scratch, a, b, enough);
+                if found >= enough {
+                    prop_assert!(judged.distance >= found - 1e-5, "{judged:?} but {found}");
+                } else {
+                    prop_assert!((judged.distance.max(0.0) - found).abs() < 1e-4, "{judged:?} but {found}");
+                }
             }
         }
     }
@@ -188,7 +246,7 @@ proptest! {
         prop_assert_eq!(model.clearance(&mut scratch, &BodySet::ALL, &all, 0.1, 3.0), Ok(3.0));
         let none = AllowedContacts::none();
         prop_assert_eq!(model.clearance(&mut scratch, &BodySet::EMPTY, &none, 0.1, 3.0), Ok(3.0));
-        let query = Query { moved: &BodySet::ALL, against: &BodySet::EMPTY, allowed: &none, clearance: 0.1, cap: 3.0 };
+        let query = Query { moved: &BodySet::ALL, against: &BodySet::EMPTY, allowed: &none, clearance: 0.1, closer: &[], cap: 3.0 };
         prop_assert_eq!(model.lower_bound(&mut scratch, &query), Ok(3.0));
         // The whole is the least of its parts, body by body.
         let whole = model.clearance(&mut scratch, &BodySet::ALL, &none, 0.0, 3.0);
@@ -201,11 +259,11 @@ proptest! {
     #[test]
     fn yes_or_no_is_what_the_reasons_say(
         first in world(bounded().boxed(), any_shape()), at in prop::collection::vec(prop::array::uniform3(-1.0_f64..1.0), 3),
-        clearance in 0.0_f64..0.1,
+        clearance in 0.0_f64..0.1, nearer in prop::array::uniform2(0.0_f64..0.1),
     ) {
         let (model, mut scratch) = first.model();
-        let none = AllowedContacts::none();
-        let query = Query { moved: &BodySet::ALL, against: &BodySet::ALL, allowed: &none, clearance, cap: 0.0 };
+        let (none, closer) = (AllowedContacts::none(), closer(nearer));
+        let query = Query { moved: &BodySet::ALL, against: &BodySet::ALL, allowed: &none, clearance, closer: &closer, cap: 0.0 };
         // The second state is asked about with the first one's answer in memory, and then the first again.
         let poses: Vec<_> = first.bodies.iter().take(first.moving).map(|(_, pose)| *pose).collect();
         let moved: Vec<_> = poses.iter().zip(&at).map(|(pose, at)| Isometry3::translation(at[0], at[1], at[2]) * pose).collect();
@@ -222,12 +280,13 @@ proptest! {
     fn a_watched_motion_is_free_as_far_as_it_says(
         world in world(bounded().boxed(), any_shape()),
         along in prop::collection::vec(prop::array::uniform3(-1.0_f64..1.0), 3), clearance in 0.0_f64..0.05,
+        nearer in prop::array::uniform2(0.0_f64..0.05),
     ) {
         let (model, mut scratch) = world.model();
-        let none = AllowedContacts::none();
+        let (none, closer) = (AllowedContacts::none(), closer(nearer));
         let velocities: Vec<Vector3<f64>> = along.into_iter().map(Vector3::from).collect();
         let reach: Vec<f64> = velocities.iter().take(world.moving).map(Vector3::norm).collect();
-        let query = Query { moved: &BodySet::ALL, against: &BodySet::ALL, allowed: &none, clearance, cap: 2.0 };
+        let query = Query { moved: &BodySet::ALL, against: &BodySet::ALL, allowed: &none, clearance, closer: &closer, cap: 2.0 };
         let settled = model.lower_bound(&mut scratch, &query);
         model.watch(&mut scratch, &query, &Travel { reach: &reach, chain: &BodySet::EMPTY, from: 0.0, to: 2.0 });
         let mut t = 0.0;
@@ -244,7 +303,7 @@ proptest! {
                     for ((_, pose), velocity) in moved.bodies.iter_mut().take(world.moving).zip(&velocities) {
                         pose.translation.vector += velocity * (t + (until - t) * fraction);
                     }
-                    if let Some(judged) = moved.judge() {
+                    for (clearance, judged) in moved.judge_each(&query) {
                         // Meshes keep a slack of 2e-5 m.
                         prop_assert!(judged.distance >= clearance - 3e-5, "{judged:?} at {t}, free until {until}");
                     }

@@ -52,6 +52,8 @@ struct Watched {
     other: Other,
     /// Metres by which the two approach at most per unit of the parameter; positive.
     speed: f64,
+    /// Metres, at least 0.
+    clearance: f64,
     /// The pair keeps the clearance up to this parameter.
     until: f64,
 }
@@ -61,7 +63,6 @@ struct Watched {
 pub(super) struct Watch {
     pairs: Vec<Watched>,
     to: f64,
-    clearance: f64,
 }
 
 impl CollisionModel {
@@ -70,14 +71,15 @@ impl CollisionModel {
     pub fn watch(&self, scratch: &mut Scratch, query: &Query<'_>, travel: &Travel<'_>) {
         self.ensure_fits(scratch);
         let Scratch { poses, near, watch, .. } = scratch;
-        let Watch { pairs, to, clearance } = watch;
+        let Watch { pairs, to } = watch;
         pairs.clear();
         *to = travel.to;
-        *clearance = query.clearance.max(0.0);
+        let most = query.clearance.max(0.0);
+        let clearance_of = |a, b| query.clearance_of(a, b).max(0.0);
         let too_near = too_near(query);
         let span = travel.to - travel.from;
         // A pair farther apart than this does not matter on this leg.
-        let enough = |speed: f64| (*clearance + span * speed).max(too_near);
+        let enough = |speed: f64| (most + span * speed).max(too_near);
         for body in query.moved.intersection(&self.moving).iter() {
             let registered = &self.bodies[body.get()];
             // Fixed bodies do not travel.
@@ -92,15 +94,15 @@ impl CollisionModel {
                 if !registered.partners.contains(partner) || !Self::asked(query, body, partner) {
                     continue;
                 }
-                let other = Other::Solid(other);
+                let (other, clearance) = (Other::Solid(other), clearance_of(body, partner));
                 let own = registered.solids.clone();
-                pairs.extend(own.map(|own| Watched { own, other, speed, until: travel.from }));
+                pairs.extend(own.map(|own| Watched { own, other, speed, clearance, until: travel.from }));
             }
             for (number, plane) in self.planes.iter().enumerate() {
                 if registered.partners.contains(plane.body) && Self::asked(query, body, plane.body) {
-                    let other = Other::Plane(number);
+                    let (other, clearance) = (Other::Plane(number), clearance_of(body, plane.body));
                     let own = registered.solids.clone();
-                    pairs.extend(own.map(|own| Watched { own, other, speed, until: travel.from }));
+                    pairs.extend(own.map(|own| Watched { own, other, speed, clearance, until: travel.from }));
                 }
             }
         }
@@ -116,9 +118,10 @@ impl CollisionModel {
                 // OPTIMIZATION: squares compare without a root.
                 let centres = (poses.balls.centre(b.get()) - poses.balls.centre(a.get())).norm_squared();
                 if speed > 0.0 && centres < apart * apart {
+                    let clearance = clearance_of(a, b);
                     for own in of_a.solids.clone() {
                         let others = of_b.solids.clone().map(Other::Solid);
-                        pairs.extend(others.map(|other| Watched { own, other, speed, until: travel.from }));
+                        pairs.extend(others.map(|other| Watched { own, other, speed, clearance, until: travel.from }));
                     }
                 }
                 None::<()>
@@ -126,11 +129,11 @@ impl CollisionModel {
         );
     }
 
-    /// The parameter up to which nothing that is watched can come nearer than the clearance, when the bodies stand where
+    /// The parameter up to which nothing that is watched can come nearer than its clearance, when the bodies stand where
     /// they are at `now`: at most `now + cap`, and at most the end of the leg.
     ///
     /// # Errors
-    /// A pair that is nearer than the clearance now, touches (to 1e-7 m) or overlaps.
+    /// A pair that is nearer than its clearance now, touches (to 1e-7 m) or overlaps.
     ///
     /// # Source
     /// Conservative advancement: B. Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996, section 2.3,
@@ -141,8 +144,7 @@ impl CollisionModel {
         if let Some(hit) = Self::unsound(poses) {
             return Err(hit);
         }
-        let Watch { pairs, to, clearance } = watch;
-        let near = clearance.max(super::scan::TOUCHING);
+        let Watch { pairs, to } = watch;
         let mut best = (now + cap).min(*to);
         let mut first = 0;
         let mut i = 0;
@@ -152,7 +154,8 @@ impl CollisionModel {
                 i += 1;
                 continue;
             }
-            let enough = (*clearance + (best - now) * pair.speed).max(near);
+            let near = pair.clearance.max(super::scan::TOUCHING);
+            let enough = (pair.clearance + (best - now) * pair.speed).max(near);
             let distance = match pair.other {
                 Other::Solid(other) => {
                     let solids = (pair.own, other);
@@ -161,7 +164,7 @@ impl CollisionModel {
                 }
                 Other::Plane(plane) => self.height(poses, (pair.own, plane), enough, near)?,
             };
-            pair.until = now + (distance - *clearance) / pair.speed;
+            pair.until = now + (distance - pair.clearance) / pair.speed;
             if pair.until >= *to && now < *to {
                 pairs.swap_remove(i);
                 continue;

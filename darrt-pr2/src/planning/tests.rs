@@ -43,15 +43,19 @@ fn more_budget_never_gives_a_plan_of_more_steps() {
 
 #[test]
 fn more_budget_never_gives_a_plan_of_less_clearance() {
-    let clearance_m = |iterations, threads| {
-        let request = PlanRequest { improve: Some(Cost::Clearance), threads, ..request(iterations) };
-        let proof = planned(&request).proof.unwrap();
-        proof.smallest_clearance.unwrap().distance_m
-    };
-    let first = planned(&request(600)).proof.unwrap().smallest_clearance.unwrap().distance_m;
-    let (some, more) = (clearance_m(600, 1), clearance_m(1200, 1));
-    assert!(first <= some && some <= more && first < more, "{first} {some} {more}");
-    assert_eq!(clearance_m(1200, 2), more);
+    let gains = (0..3).map(|seed| {
+        let clearance_m = |improve, iterations, threads| {
+            let request = PlanRequest { improve, threads, seed, ..request(iterations) };
+            planned(&request).proof.unwrap().smallest_clearance.unwrap().distance_m
+        };
+        let best = Some(Cost::Clearance);
+        let first = clearance_m(None, 600, 1);
+        let (some, more) = (clearance_m(best, 600, 1), clearance_m(best, 1200, 1));
+        assert!(first <= some && some <= more, "{first} {some} {more}");
+        assert_eq!(clearance_m(best, 1200, 2), more);
+        more - first
+    });
+    assert!(gains.fold(0.0, f64::max) > 0.0);
 }
 
 /// The smoother plan has often less clearance; what is returned then is the plan before, with its own proof.
@@ -75,7 +79,7 @@ fn a_smoother_plan_has_the_clearance_that_the_search_keeps() {
         let planned = |smooth| planned(&PlanRequest { seed, smooth, ..request(600) });
         let clearance_m = |result: PlanResult| result.proof.unwrap().smallest_clearance.unwrap().distance_m;
         let (before, after) = (clearance_m(planned(0)), clearance_m(planned(40)));
-        assert!(after >= before.min(0.002), "seed {seed}: {before} {after}");
+        assert!(after >= before.min(0.02), "seed {seed}: {before} {after}");
     }
 }
 

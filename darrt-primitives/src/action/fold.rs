@@ -64,15 +64,16 @@ pub(super) fn order<M: Manipulator>(
     let mut costs: Vec<_> = costs.collect();
     costs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut probe = Probe::new(m, from, from.mode.clone());
-    let mut is_fit = |arm: &M::Joints| {
+    let mut is_fit = |arm: &M::Joints, care| {
         [from.robot.base, target.base]
             .into_iter()
-            .all(|base| probe.is_clear(&Configuration { base, arm: *arm }, &Contacts::default()))
+            .all(|base| probe.is_clear(&Configuration { base, arm: *arm }, &Contacts::default(), care))
             && held.is_none_or(|held| {
                 stays_level(m, &held, &from.robot.arm, arm) && stays_level(m, &held, arm, &target.arm)
             })
     };
-    let found = costs.iter().find(|(_, _, arm)| is_fit(arm)).or(costs.first());
+    let cares = [m.surroundings().most_care(), 0];
+    let found = cares.iter().find_map(|care| costs.iter().find(|(_, _, arm)| is_fit(arm, *care))).or(costs.first());
     found.map_or(Order::BaseFirst, |(_, order, _)| *order)
 }
 

@@ -8,7 +8,7 @@ use rand::{Rng, RngExt};
 
 use super::push::approach;
 use super::retreat::retreat;
-use super::stance::{Probe, Refused, Wanted, at_end, stance};
+use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::grasp::hold::Hold;
@@ -49,7 +49,10 @@ pub fn pick<M: Manipulator>(
     let beside = from.mode.engaged_with(object).ok_or(Infeasible::NoGrasp)?;
     let mut fitted = 0;
     let mut why = Infeasible::NoGrasp;
-    for _ in 0..m.settings().grasp_tries * GRASPS_PER_TRY {
+    let draws = m.settings().grasp_tries * GRASPS_PER_TRY;
+    for draw in 0..draws {
+        // At first the hand is to have all the room that is wanted, then what it needs.
+        let care = if draw < draws / 2 { m.surroundings().most_care() } else { 0 };
         let Some(family) = movable.grasps.get(rng.random_range(0..movable.grasps.len())) else { continue };
         if family.needs_overhang() && !overhangs {
             continue;
@@ -73,9 +76,12 @@ pub fn pick<M: Manipulator>(
             why = Infeasible::Blocked(blame);
             continue;
         }
+        if care > 0 && !probe.is_hand_clear(&at_grasp, &open, care) {
+            continue;
+        }
         fitted += 1;
         let picking = Picking { object, pose, grasp: &grasp, hold, at_grasp: &at_grasp };
-        match stance(m, from, &wanted, rng, |q| way_of(m, q, &picking, movable, &mut probe)) {
+        match stance(m, from, &wanted, rng, |q, care| way_of(m, q, &picking, movable, &mut probe, care)) {
             Ok(way) => return assemble(m, chain, &picking, &way, rng),
             Err(refused) => why = refused,
         }
@@ -142,22 +148,23 @@ fn way_of<M: Manipulator>(
     picking: &Picking<'_>,
     movable: &Movable,
     probe: &mut Probe<'_, M>,
+    care: &mut Care,
 ) -> Result<Way<M::Joints>, Refused<M>> {
     let Picking { object, grasp, at_grasp, .. } = *picking;
     let open = straddling(object, grasp);
-    probe.check(q, &open)?;
+    probe.check(q, &open, care)?;
     let back = at_grasp.rotation * Vector3::new(-grasp.approach_m, 0.0, 0.0);
     let out = line::follow(m, &q.base, &q.arm, at_grasp, &back);
     if out.share() < m.settings().least_line_share {
         return Err(Refused::Unreachable);
     }
-    probe.check(&at_end(q.base, &out.arms)?, &Contacts::default())?;
+    probe.check(&at_end(q.base, &out.arms)?, &Contacts::default(), care)?;
     let [least, best] = movable.lift_m;
     let up = line::follow(m, &q.base, &q.arm, at_grasp, &(Vector3::z() * best));
     if up.share() * best < least {
         return Err(Refused::Unreachable);
     }
-    check_lifted(m, picking, &at_end(q.base, &up.arms)?, probe)?;
+    check_lifted(m, picking, &at_end(q.base, &up.arms)?, probe, care)?;
     let in_ = out.arms.iter().rev().copied().chain([q.arm]).collect();
     Ok(Way { base: q.base, in_, up: up.arms })
 }
@@ -168,11 +175,12 @@ fn check_lifted<M: Manipulator>(
     picking: &Picking<'_>,
     lifted: &Configuration<M::Joints>,
     probe: &Probe<'_, M>,
+    care: &mut Care,
 ) -> Result<(), Refused<M>> {
     let beside = probe.state().mode.clone();
     let held = picking.held(picking.at_grasp.inverse() * picking.pose);
     let mode = beside.attached(held, picking.grasp.closed_gap_m).ok_or(Refused::Unreachable)?;
-    Probe::new(m, probe.state(), mode).check(lifted, &Contacts::default())
+    Probe::new(m, probe.state(), mode).check(lifted, &Contacts::default(), care)
 }
 
 fn assemble<M: Manipulator>(

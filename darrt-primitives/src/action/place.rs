@@ -8,7 +8,7 @@ use nalgebra::{Isometry3, Vector3};
 use rand::{Rng, RngExt};
 
 use super::retreat::retreat;
-use super::stance::{Probe, Refused, Wanted, at_end, stance};
+use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
 use super::travel::travel;
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
@@ -54,13 +54,17 @@ pub fn place<M: Manipulator>(
     let mut after = Probe::new(m, from, released);
     let letting_go = contacts(held.object, surface);
     let mut clear = 0;
-    for _ in 0..YAW_DRAWS {
+    for draw in 0..YAW_DRAWS {
+        // At first hand and object are to have all the room that is wanted, then what they need.
+        let care = if draw < YAW_DRAWS / 2 { m.surroundings().most_care() } else { 0 };
         let standing = standing_pose(m, &held, surface, target, rng).ok_or(Infeasible::OffSupport)?;
         let at_place = standing * held.tool_from_object.inverse();
         before.place(held.object, &standing);
         after.place(held.object, &standing);
         // With the fingers closed as much as opened: the lower one moves beside the surface when it lets go.
-        if let Some(probe) = [&before, &after].into_iter().find(|probe| !probe.is_hand_clear(&at_place, &letting_go)) {
+        if let Some(probe) =
+            [&before, &after].into_iter().find(|probe| !probe.is_hand_clear(&at_place, &letting_go, care))
+        {
             // What it is, is found out once.
             in_the_way = in_the_way.or_else(|| probe.check_hand(&at_place, &letting_go).err());
             continue;
@@ -68,9 +72,9 @@ pub fn place<M: Manipulator>(
         clear += 1;
         let tries = m.settings().base_tries.div_ceil(2);
         let wanted = Wanted { world_from_tool: &at_place, tries };
-        let way = stance(m, from, &wanted, rng, |q| {
-            after.check(q, &letting_go)?;
-            way_of(m, q, &at_place, &down, &mut before)
+        let way = stance(m, from, &wanted, rng, |q, care| {
+            after.check(q, &letting_go, care)?;
+            way_of(m, q, &at_place, &down, &mut before, care)
         });
         match way {
             Ok(way) => return assemble(m, from, &held, surface, &way, rng),
@@ -116,12 +120,13 @@ fn way_of<M: Manipulator>(
     at_place: &Isometry3<f64>,
     direction: &Vector3<f64>,
     before: &mut Probe<'_, M>,
+    care: &mut Care,
 ) -> Result<Way<M::Joints>, Refused<M>> {
     let out = line::follow(m, &q.base, &q.arm, at_place, &(-direction * m.settings().place.approach_m));
     if out.share() < m.settings().least_line_share {
         return Err(Refused::Unreachable);
     }
-    before.check(&at_end(q.base, &out.arms)?, &Contacts::default())?;
+    before.check(&at_end(q.base, &out.arms)?, &Contacts::default(), care)?;
     let down = out.arms.iter().rev().copied().chain([q.arm]).collect();
     Ok(Way { base: q.base, down })
 }

@@ -7,7 +7,7 @@ use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
 use super::retreat::retreat;
-use super::stance::{Probe, Refused, Wanted, at_end, stance};
+use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
 use super::travel::travel;
 use super::{Chain, label, line};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
@@ -30,6 +30,9 @@ struct Way<J> {
     /// Along the push as far as the arm reaches.
     along: line::Line<J>,
 }
+
+/// Share of the pushes that may take the object as near to other things as the rules allow; the others keep the wanted margin.
+const CLOSE_SHARE: f64 = 0.25;
 
 /// How far before what is in its way the object stops, metres.
 const STOP_BEFORE_M: f64 = 0.01;
@@ -59,7 +62,8 @@ pub fn push<M: Manipulator>(
     let pose = from.object(object).ok_or(Infeasible::NoContact)?;
 
     let mut end = end_of_push(m, surface, pose, target, rng)?;
-    shorten_to_free(m, from, object, &mut end)?;
+    let care = if rng.random_bool(CLOSE_SHARE) { 0 } else { m.surroundings().most_care() };
+    shorten_to_free(m, from, object, &mut end, care)?;
     let hand = m.manipulator().hand();
     let contact =
         RimContact::new(radius, settings.gap_m, hand.tip_half_width_m()).map_err(|_| Infeasible::NoContact)?;
@@ -76,7 +80,7 @@ pub fn push<M: Manipulator>(
     probe.check_hand(&at_contact, &contacts(object)).map_err(Infeasible::Blocked)?;
     let mut chain = Chain::at(from);
     retreat(m, &mut chain, m.settings().retreat_m)?;
-    let way = stance(m, from, &wanted, rng, |q| way_of(m, q, &push, &mut probe))?;
+    let way = stance(m, from, &wanted, rng, |q, care| way_of(m, q, &push, &mut probe, care))?;
     assemble(m, chain, &push, &way, rng)
 }
 
@@ -106,9 +110,10 @@ fn shorten_to_free<M: Manipulator>(
     from: &TabletopState<M>,
     object: ObjectId,
     end: &mut PushEnd,
+    care: usize,
 ) -> Result<(), Infeasible> {
     let way = Vector3::new(end.direction.x, end.direction.y, 0.0) * end.length;
-    let (free_m, blame) = m.surroundings().free_slide(from, object, &way);
+    let (free_m, blame) = m.surroundings().free_slide(from, object, &way, care);
     if let Some(blame) = blame {
         let length = free_m - STOP_BEFORE_M;
         if length < LEAST_PUSH_M {
@@ -145,11 +150,12 @@ fn way_of<M: Manipulator>(
     q: &Configuration<M::Joints>,
     push: &Pushing<'_>,
     probe: &mut Probe<'_, M>,
+    care: &mut Care,
 ) -> Result<Way<M::Joints>, Refused<M>> {
     let settings = &m.settings().push;
     let Pushing { at_contact, end, .. } = push;
     let touching = contacts(push.object);
-    probe.check(q, &touching)?;
+    probe.check(q, &touching, care)?;
     let ahead = Vector3::new(end.direction.x, end.direction.y, 0.0);
     // The first step decides most often, so it is tried before anything else.
     let along = line::follow(m, &q.base, &q.arm, at_contact, &(ahead * end.length));
@@ -157,7 +163,7 @@ fn way_of<M: Manipulator>(
         return Err(Refused::Unreachable);
     }
     probe.place(push.object, &push.pose_at(along.share()));
-    let pushed = probe.check(&at_end(q.base, &along.arms)?, &touching);
+    let pushed = probe.check(&at_end(q.base, &along.arms)?, &touching, care);
     probe.place(push.object, push.pose);
     pushed?;
     let back = line::follow(m, &q.base, &q.arm, at_contact, &(-ahead * settings.standoff_m));
@@ -168,7 +174,7 @@ fn way_of<M: Manipulator>(
     if up.share() < m.settings().least_line_share {
         return Err(Refused::Unreachable);
     }
-    probe.check(&at_end(q.base, &up.arms)?, &Contacts::default())?;
+    probe.check(&at_end(q.base, &up.arms)?, &Contacts::default(), care)?;
     let down = up.arms.iter().rev().copied().chain([standoff]).collect();
     Ok(Way { base: q.base, down, contact: q.arm, along })
 }

@@ -22,6 +22,19 @@ const ARM_TRIES: usize = 4;
 /// Of so many bases drawn the nearest is tried first. With all of them at once the robot would hardly ever go round a table.
 const NEAREST_OF: usize = 4;
 
+/// On so many more bases a stance with more of the wanted margins is looked for when one that keeps the rules is found.
+const MORE_TRIES: usize = 4;
+
+/// With how much [care](darrt_core::validity::Validity::most_care) a stance is looked at: what is asked of it goes down as
+/// states are found that keep no more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Care {
+    /// What all states so far keep.
+    kept: usize,
+    /// With less the stance is refused.
+    least: usize,
+}
+
 /// What is asked of a stance.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted<'a> {
@@ -57,7 +70,8 @@ impl<M: Manipulator> Blocked<M> {
 }
 
 /// Tries bases for the wanted hand pose: sometimes the present one first, then random ones, the nearer ones of each few first,
-/// each with a few arm configurations. `accept` makes something of a stance, or refuses it and the next is tried.
+/// each with a few arm configurations. `accept` makes something of a stance, or refuses it and the next is tried. The first
+/// stance with all the margins that are wanted is taken, or of those found on a few more bases the one with the most.
 ///
 /// # Errors
 /// [`Infeasible::Blocked`] with what was in the way of the last stance that the arm reached, [`Infeasible::Unreachable`]
@@ -67,7 +81,7 @@ pub fn stance<M: Manipulator, T>(
     from: &TabletopState<M>,
     wanted: &Wanted<'_>,
     rng: &mut dyn Rng,
-    mut accept: impl FnMut(&Configuration<M::Joints>) -> Result<T, Refused<M>>,
+    mut accept: impl FnMut(&Configuration<M::Joints>, &mut Care) -> Result<T, Refused<M>>,
 ) -> Result<T, Infeasible> {
     let robot = m.manipulator();
     let Wanted { world_from_tool, tries } = *wanted;
@@ -83,6 +97,9 @@ pub fn stance<M: Manipulator, T>(
         bases.resize(stays, here);
         left -= stays;
     }
+    let most = m.surroundings().most_care();
+    let (mut best, mut least) = (None, 0);
+    let mut tries_left = usize::MAX;
     let mut blocked = None;
     loop {
         if bases.is_empty() {
@@ -91,7 +108,8 @@ pub fn stance<M: Manipulator, T>(
             bases.sort_by(|a, b| space.distance(&here, b).total_cmp(&space.distance(&here, a)));
             left -= few;
         }
-        let Some(base) = bases.pop() else { break };
+        let Some(base) = bases.pop().filter(|_| tries_left > 0) else { break };
+        tries_left -= 1;
         let parked = Configuration { base, arm: from.robot.arm };
         if !m.robot().base().contains(&base)
             || !robot.may_reach(&base, world_from_tool)
@@ -101,14 +119,20 @@ pub fn stance<M: Manipulator, T>(
         }
         for _ in 0..ARM_TRIES {
             let Some(arm) = robot.inverse(&base, world_from_tool, rng) else { break };
-            match accept(&Configuration { base, arm }) {
-                Ok(found) => return Ok(found),
+            let mut care = Care { kept: most, least };
+            match accept(&Configuration { base, arm }, &mut care) {
+                Ok(found) if care.kept >= most => return Ok(found),
+                Ok(found) => {
+                    tries_left = tries_left.min(MORE_TRIES);
+                    // From here on only a better one will do.
+                    (best, least) = (Some(found), care.kept + 1);
+                }
                 Err(Refused::Blocked(last)) => blocked = Some(last),
                 Err(Refused::Unreachable) => {}
             }
         }
     }
-    Err(blocked.map_or(Infeasible::Unreachable, |last| last.why(m)))
+    best.ok_or_else(|| blocked.map_or(Infeasible::Unreachable, |last| last.why(m)))
 }
 
 /// The robot at `base` with its arm at the end of a line that may have none.
@@ -156,19 +180,20 @@ impl<'a, M: Manipulator> Probe<'a, M> {
         self.m.surroundings().check_hand(self.hand(), &self.state, world_from_tool, contacts)
     }
 
-    /// [`Probe::check_hand`] without reasons, which takes less time where it is asked often.
-    pub fn is_hand_clear(&self, world_from_tool: &Isometry3<f64>, contacts: &Contacts) -> bool {
-        self.m.surroundings().is_hand_clear(self.hand(), &self.state, world_from_tool, contacts)
+    /// [`Probe::check_hand`] with care and without reasons, which takes less time where it is asked often.
+    pub fn is_hand_clear(&self, world_from_tool: &Isometry3<f64>, contacts: &Contacts, care: usize) -> bool {
+        self.m.surroundings().is_hand_clear(self.hand(), &self.state, world_from_tool, contacts, care)
     }
 
     fn hand(&self) -> &Hand {
         self.hand.get_or_init(|| self.m.surroundings().hand(self.m.manipulator(), &self.state))
     }
 
-    /// Is nothing in the way with the robot at `q`, what it holds in its hand?
-    pub fn is_clear(&mut self, q: &Configuration<M::Joints>, contacts: &Contacts) -> bool {
+    /// Is nothing in the way with the robot at `q`, what it holds in its hand, with this
+    /// [care](darrt_core::validity::Validity::most_care)?
+    pub fn is_clear(&mut self, q: &Configuration<M::Joints>, contacts: &Contacts, care: usize) -> bool {
         self.put(q);
-        self.m.surroundings().is_state_clear(self.m.manipulator(), &self.state, contacts)
+        self.m.surroundings().is_state_clear(self.m.manipulator(), &self.state, contacts, care)
     }
 
     fn put(&mut self, q: &Configuration<M::Joints>) {
@@ -180,13 +205,24 @@ impl<'a, M: Manipulator> Probe<'a, M> {
         }
     }
 
-    /// [`Probe::is_clear`] as a reason to refuse a stance, whose base [`stance`] has found clear.
+    /// [`Probe::is_clear`] as a reason to refuse a stance, whose base [`stance`] has found clear: with as much care as it keeps.
     ///
     /// # Errors
     /// [`Refused::Blocked`] with the state asked about.
-    pub fn check(&mut self, q: &Configuration<M::Joints>, contacts: &Contacts) -> Result<(), Refused<M>> {
+    pub fn check(
+        &mut self,
+        q: &Configuration<M::Joints>,
+        contacts: &Contacts,
+        care: &mut Care,
+    ) -> Result<(), Refused<M>> {
         self.put(q);
-        if self.m.surroundings().is_rest_clear(self.m.manipulator(), &self.state, contacts) {
+        let (around, robot) = (self.m.surroundings(), self.m.manipulator());
+        let is_clear = |level| match level {
+            0 => around.is_rest_clear(robot, &self.state, contacts),
+            level => around.is_state_clear(robot, &self.state, contacts, level),
+        };
+        if let Some(kept) = (care.least..=care.kept).rev().find(|level| is_clear(*level)) {
+            care.kept = kept;
             return Ok(());
         }
         Err(Refused::Blocked(Box::new(Blocked { state: self.state.clone(), contacts: *contacts })))

@@ -30,7 +30,7 @@ pub fn transfer<M: Manipulator>(
     let at_target = target * held.tool_from_object.inverse();
     let wanted = Wanted { world_from_tool: &at_target, tries: m.settings().base_tries };
     let mut probe = Probe::new(m, from, from.mode.clone());
-    let robot = stance(m, from, &wanted, rng, |q| probe.check(q, &Contacts::default()).map(|()| *q))?;
+    let robot = stance(m, from, &wanted, rng, |q, care| probe.check(q, &Contacts::default(), care).map(|()| *q))?;
     let mut chain = Chain::at(from);
     travel(m, &mut chain, &robot, from.mode.gap_m(), rng);
     chain.finish()

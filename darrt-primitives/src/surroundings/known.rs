@@ -4,6 +4,8 @@
 use darrt_geom::allowed::AllowedContacts;
 use nalgebra::Isometry3;
 
+use super::margins::Terms;
+
 /// How many are kept.
 const KEPT: usize = 8;
 
@@ -13,7 +15,7 @@ struct Clear {
     /// Links and then objects.
     poses: Vec<Isometry3<f64>>,
     allowed: AllowedContacts,
-    clearance_m: f64,
+    terms: Terms,
 }
 
 /// The states last found clear. What is found in here would be found again: it saves time and changes no answer.
@@ -26,24 +28,22 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// Is it known that with these poses nothing but what is allowed is nearer than the clearance?
-    pub(super) fn is_clear(&self, poses: &[Isometry3<f64>], allowed: &AllowedContacts, clearance_m: f64) -> bool {
-        self.states
-            .iter()
-            .any(|state| state.clearance_m >= clearance_m && state.poses == *poses && state.allowed == *allowed)
+    /// Is it known that with these poses nothing but what is allowed is nearer than these terms say?
+    pub(super) fn is_clear(&self, poses: &[Isometry3<f64>], allowed: &AllowedContacts, terms: &Terms) -> bool {
+        self.states.iter().any(|state| state.terms.imply(terms) && state.poses == *poses && state.allowed == *allowed)
     }
 
     /// Takes note of a state that is clear.
-    pub(super) fn note(&mut self, poses: &[Isometry3<f64>], allowed: &AllowedContacts, clearance_m: f64) {
+    pub(super) fn note(&mut self, poses: &[Isometry3<f64>], allowed: &AllowedContacts, terms: &Terms) {
         let Some(slot) = self.states.get_mut(self.oldest) else {
-            self.states.push(Clear { poses: poses.to_vec(), allowed: allowed.clone(), clearance_m });
+            self.states.push(Clear { poses: poses.to_vec(), allowed: allowed.clone(), terms: *terms });
             self.oldest = self.states.len() % KEPT;
             return;
         };
         slot.poses.clear();
         slot.poses.extend_from_slice(poses);
         slot.allowed.clone_from(allowed);
-        slot.clearance_m = clearance_m;
+        slot.terms = *terms;
         self.oldest = (self.oldest + 1) % KEPT;
     }
 }
@@ -51,6 +51,7 @@ impl Known {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::surroundings::Strict;
     use darrt_geom::allowed::ContactReason;
     use darrt_geom::body_set::BodyIndex;
 
@@ -60,26 +61,33 @@ mod tests {
 
     #[test]
     fn what_was_noted_is_known_until_enough_others_are() {
-        let (mut known, none) = (Known::default(), AllowedContacts::none());
+        let (mut known, none, terms) = (Known::default(), AllowedContacts::none(), Terms::default());
         for i in 0..3 * KEPT {
-            assert!(!known.is_clear(&poses(i as f64), &none, 0.01));
-            known.note(&poses(i as f64), &none, 0.01);
-            assert!(known.is_clear(&poses(i as f64), &none, 0.01));
+            assert!(!known.is_clear(&poses(i as f64), &none, &terms));
+            known.note(&poses(i as f64), &none, &terms);
+            assert!(known.is_clear(&poses(i as f64), &none, &terms));
             assert_eq!(i >= KEPT - 1, known.states.len() == KEPT);
             let oldest = i.saturating_sub(KEPT - 1);
-            assert!((oldest..i).all(|j| known.is_clear(&poses(j as f64), &none, 0.01)));
-            assert!((0..oldest).all(|j| !known.is_clear(&poses(j as f64), &none, 0.01)));
+            assert!((oldest..i).all(|j| known.is_clear(&poses(j as f64), &none, &terms)));
+            assert!((0..oldest).all(|j| !known.is_clear(&poses(j as f64), &none, &terms)));
         }
     }
 
     #[test]
-    fn neither_a_wider_clearance_nor_other_contacts_are_known() {
+    fn neither_more_care_nor_other_contacts_are_known() {
         let (mut known, none) = (Known::default(), AllowedContacts::none());
-        known.note(&poses(1.0), &none, 0.01);
-        assert!(known.is_clear(&poses(1.0), &none, 0.005));
-        assert!(!known.is_clear(&poses(1.0), &none, 0.011));
+        let terms = |care, is_between| Terms { strict: Strict { care, is_between }, ..Terms::default() };
+        known.note(&poses(1.0), &none, &terms(1, false));
+        for (care, is_between, is_known) in [(0, false, true), (1, true, true), (0, true, true), (2, true, false)] {
+            assert_eq!(known.is_clear(&poses(1.0), &none, &terms(care, is_between)), is_known, "{care} {is_between}");
+        }
         let mut touching = AllowedContacts::none();
         touching.allow(BodyIndex::new(0), BodyIndex::new(1), ContactReason::Held);
-        assert!(!known.is_clear(&poses(1.0), &touching, 0.01));
+        assert!(!known.is_clear(&poses(1.0), &touching, &terms(0, false)));
+        known.note(&poses(2.0), &none, &terms(0, true));
+        assert!(
+            known.is_clear(&poses(2.0), &none, &terms(0, true))
+                && !known.is_clear(&poses(2.0), &none, &terms(0, false))
+        );
     }
 }

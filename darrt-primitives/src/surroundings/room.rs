@@ -8,7 +8,7 @@ use darrt_geom::allowed::AllowedContacts;
 use darrt_geom::body_set::{BodyIndex, BodySet};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
-use super::{Surroundings, Worker};
+use super::{Strict, Surroundings, Worker};
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::Contacts;
 use crate::tabletop::TabletopState;
@@ -34,6 +34,7 @@ impl Surroundings {
         let world_from_base = Isometry3::from_parts(Vector3::new(x, y, 0.0).into(), turn);
         self.with_worker(|worker| {
             worker.allowed = AllowedContacts::none();
+            self.keep_alone(Strict::with(0), &mut worker.keep);
             for (id, base_from_link) in base_from_link {
                 self.model.set_pose(&mut worker.scratch, *id, &(world_from_base * base_from_link));
             }
@@ -69,21 +70,24 @@ impl Surroundings {
         contacts: &Contacts,
     ) -> Result<(), Blame> {
         let hit = self.with_worker(|worker| {
+            self.set_rules(like, contacts, Strict::with(0), worker);
             let (moved, others) = self.pose_hand(hand, like, world_from_tool, contacts, worker);
             self.lower_bound(worker, &moved, &others, 0.0)
         });
         hit.map(|_| ()).map_err(|hit| self.blame(&hit))
     }
 
-    /// [`Surroundings::check_hand`] without reasons.
+    /// [`Surroundings::check_hand`] with [care](Surroundings::most_care) and without reasons.
     pub fn is_hand_clear<M: Manipulator>(
         &self,
         hand: &Hand,
         like: &TabletopState<M>,
         world_from_tool: &Isometry3<f64>,
         contacts: &Contacts,
+        care: usize,
     ) -> bool {
         self.with_worker(|worker| {
+            self.set_rules(like, contacts, Strict::with(care), worker);
             let (moved, others) = self.pose_hand(hand, like, world_from_tool, contacts, worker);
             self.is_clear(worker, &moved, &others)
         })
@@ -98,7 +102,6 @@ impl Surroundings {
         contacts: &Contacts,
         worker: &mut Worker,
     ) -> (BodySet, BodySet) {
-        self.allow(like, contacts, &mut worker.allowed);
         self.pose_objects(like, worker);
         for (id, tool_from_link) in &hand.tool_from_link {
             self.model.set_pose(&mut worker.scratch, *id, &(world_from_tool * tool_from_link));
@@ -111,20 +114,21 @@ impl Surroundings {
         (moved, BodySet::ALL.difference(&self.all_links.difference(&self.hand_links)))
     }
 
-    /// How far a resting object could slide in a straight line if the robot were not there: metres along `way`, at most
-    /// its length, and what ends it.
+    /// How far a resting object could slide in a straight line with this [care](Surroundings::most_care) if the robot were
+    /// not there: metres along `way`, at most its length, and what ends it.
     pub fn free_slide<M: Manipulator>(
         &self,
         from: &TabletopState<M>,
         object: ObjectId,
         way: &Vector3<f64>,
+        care: usize,
     ) -> (f64, Option<Blame>) {
         let length_m = way.norm();
         let (Some(id), Some(start)) = (self.objects.get(object.index()).copied(), from.object(object)) else {
             return (0.0, None);
         };
         let hit = self.with_worker(|worker| {
-            self.allow(from, &Contacts::default(), &mut worker.allowed);
+            self.set_rules(from, &Contacts::default(), Strict::with(care), worker);
             self.pose_objects(from, worker);
             let mut moved = BodySet::EMPTY;
             moved.insert(id);
@@ -135,15 +139,16 @@ impl Surroundings {
                 pose.translation.vector += way * if length_m > 0.0 { s / length_m } else { 0.0 };
                 self.model.set_pose(&mut worker.scratch, id, &pose);
                 match self.lower_bound(worker, &moved, &others, self.strictness.cap_m) {
-                    Err(hit) => return Err((s, hit)),
+                    // Up to here it came by no more than was free, so it was clear that much before.
+                    Err(hit) => return Err(((s - worker.keep.most_m).max(0.0), hit)),
                     Ok(_) if s >= length_m => return Ok(()),
-                    Ok(free) => s = (s + free.max(self.strictness.clearance_m)).min(length_m),
+                    Ok(free) => s = (s + free.max(self.unseen_m)).min(length_m),
                 }
             }
         });
         match hit {
             Ok(()) => (length_m, None),
-            Err((s, hit)) => ((s - self.strictness.clearance_m).max(0.0), Some(self.blame(&hit))),
+            Err((s, hit)) => (s, Some(self.blame(&hit))),
         }
     }
 

@@ -85,7 +85,7 @@ impl Hand for Gripper {
 pub const LINKS: [(&str, LinkGroup, [f64; 3]); 5] = [
     ("wagon", LinkGroup::Base, [0.15, 0.15, 0.1]),
     ("wrist", LinkGroup::Arm, [0.03, 0.03, 0.03]),
-    ("palm", LinkGroup::Arm, [0.03, 0.06, 0.03]),
+    ("palm", LinkGroup::Hand, [0.03, 0.06, 0.03]),
     ("left finger", LinkGroup::Finger, [TIP_BEYOND_TOOL_M, FINGER_HALF_M, TIP_HALF_WIDTH_M]),
     ("right finger", LinkGroup::Finger, [TIP_BEYOND_TOOL_M, FINGER_HALF_M, TIP_HALF_WIDTH_M]),
 ];

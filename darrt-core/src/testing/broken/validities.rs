@@ -8,12 +8,12 @@ use super::Case;
 use super::bench::{Bench, Check, Rule, TOUCH_M, blame, check as honest_check, scan, state};
 use super::motions::{drag, go};
 use crate::laws::validity::{
-    BLAME_NAMES, BLAME_REAL, BLAME_TEXT, CUT, ENLARGED, EXEMPTIONS, FRACTION, ONE_BY_ONE, ORACLE, PURE,
+    BLAME_NAMES, BLAME_REAL, BLAME_TEXT, CARE, CUT, ENLARGED, EXEMPTIONS, FRACTION, ONE_BY_ONE, ORACLE, PURE,
 };
 use crate::laws::{Broken, ValidityClaims, check_against_oracle, check_enlarged, check_validity};
 use crate::motion::Instance;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
-use crate::validity::{BlockKind, FreePrefix, Validity};
+use crate::validity::{Blame, BlockKind, FreePrefix, Validity};
 
 /// A motion that ends in the wall, one that runs through it, one that is free, one that begins in it, one
 /// that is short, and a drag.
@@ -180,8 +180,53 @@ fn rules() -> Vec<Case> {
     ]
 }
 
+/// Rules, and what is asked with care.
+struct Careful {
+    rules: Rule,
+    with_care: Rule,
+}
+
+impl Validity<Bench> for Careful {
+    fn check(&self, m: &Bench, state: &State<Bench>, contacts: &ComponentSet) -> Result<(), Blame> {
+        self.rules.check(m, state, contacts)
+    }
+
+    fn free_prefix(&self, m: &Bench, instance: &Instance<Bench>, from: &State<Bench>) -> FreePrefix {
+        self.rules.free_prefix(m, instance, from)
+    }
+
+    fn most_care(&self) -> usize {
+        1
+    }
+
+    fn check_with(&self, care: usize, m: &Bench, state: &State<Bench>, contacts: &ComponentSet) -> Result<(), Blame> {
+        if care > 0 { self.with_care.check(m, state, contacts) } else { self.rules.check(m, state, contacts) }
+    }
+
+    fn free_prefix_with(&self, care: usize, m: &Bench, instance: &Instance<Bench>, from: &State<Bench>) -> FreePrefix {
+        let rule = if care > 0 { &self.with_care } else { &self.rules };
+        rule.free_prefix(m, instance, from)
+    }
+}
+
+fn careful(wall: (f64, f64)) -> Result<(), Broken> {
+    let m = Bench::default();
+    let rule = Careful { rules: Rule::default(), with_care: Rule { wall, ..Rule::default() } };
+    let from = state([0.5, 3.0]);
+    let check =
+        |to| check_validity(&m, &rule, &Arc::new(go(&m, &from, [to, 3.0])), &from, &ValidityClaims::default(), 1);
+    [0.6, 0.97, 1.05, 1.2].into_iter().try_for_each(check)
+}
+
 fn pairs() -> Vec<Case> {
     vec![
+        Case {
+            name: "careless with care",
+            wrong: "the margin is taken from the obstacle, not added to it",
+            law: CARE,
+            broken: || careful((1.1, 1.4)),
+            honest: || careful((0.9, 1.6)),
+        },
         Case {
             name: "hollow obstacle",
             wrong: "tests the faces of the obstacle only: well inside it everything is free",
