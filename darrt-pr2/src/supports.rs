@@ -101,7 +101,7 @@ mod tests {
         let mut leaf = problem.obstacles[0].clone();
         leaf.name = "leaf".to_owned();
         leaf.shape = crate::problem_file::ShapeSpec::Box { size: [0.4, high.y - low.y, 0.03] };
-        leaf.at = vec![low.x - gap_m - 0.2, (low.y + high.y) / 2.0, z - 0.015];
+        leaf.at = vec![low.x - gap_m - 0.2, f64::midpoint(low.y, high.y), z - 0.015];
         leaf.standing_on = None;
         problem.obstacles.push(leaf);
         let mut surface = problem.surfaces[0].clone();

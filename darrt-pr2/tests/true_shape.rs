@@ -1,6 +1,8 @@
 //! The solids of the built-in description hold the real robot: points measured on its meshes, which are not part of this
 //! project, lie inside them at any values of the joints, and the solids reach little farther.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test stops at the first surprise")]
+
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 

@@ -45,7 +45,7 @@ fn more_budget_never_gives_a_plan_of_more_steps() {
 fn more_budget_never_gives_a_plan_of_less_clearance() {
     let gains = (0..3).map(|seed| {
         let clearance_m = |improve, iterations, threads| {
-            let request = PlanRequest { improve, threads, seed, ..request(iterations) };
+            let request = PlanRequest { seed, threads, improve, ..request(iterations) };
             planned(&request).proof.unwrap().smallest_clearance.unwrap().distance_m
         };
         let best = Some(Cost::Clearance);

@@ -15,7 +15,7 @@
 //!
 //! all with [`SAFETY`] times the weight. The last condition allows half of the couple F l of two pads that touch at opposite
 //! ends only. The mean distance c of the pressure from its middle is
-//! [`PressureConstant`](crate::push::limit_surface::PressureConstant).
+//! [`PressureConstant`].
 //!
 //! # Source
 //! Force closure of two contacts: Nguyen, Constructing force-closure grasps, IJRR 7(3), 1988. Soft fingers: Howe and

@@ -128,7 +128,9 @@ impl Surroundings {
             let object = body(object)?;
             let under = self.supports.get(surface.index()).into_iter().flatten().copied();
             let (mut ones, mut others) = (self.hand_links, under.collect::<BodySet>());
-            [&mut ones, &mut others].into_iter().for_each(|set| set.insert(object));
+            for set in [&mut ones, &mut others] {
+                set.insert(object);
+            }
             Some((ones, others))
         });
         let held = mode.held().and_then(|held| body(held.object)).into_iter().collect();
@@ -194,7 +196,9 @@ impl Surroundings {
         let told =
             told.map(|(a, b, distance_m)| NearPair { bodies: [*a, *b].map(name), distance_m: *distance_m, is_at_goal });
         let told = told.collect();
-        near.into_iter().for_each(|(a, b, distance_m)| self.except(a, b, distance_m));
+        for (a, b, distance_m) in near {
+            self.except(a, b, distance_m);
+        }
         told
     }
 
