@@ -30,7 +30,7 @@ fn lean_deg(plan: &PlanFile) -> f64 {
 #[test]
 fn a_bowl_leans_as_far_as_it_may_and_no_farther() {
     let free = most_lean_deg(180.0, SEEDS);
-    for limit_deg in [4.0, 8.0] {
+    for limit_deg in [5.0, 10.0] {
         let bound = most_lean_deg(limit_deg, SEEDS);
         assert!(bound <= limit_deg && bound < free, "{bound} of {limit_deg}, {free} without a limit");
     }
