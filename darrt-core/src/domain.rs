@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::fmt::Debug;
 
 use crate::space::ComponentSpace;
-use crate::state::{ComponentId, ObjectConfig, ObjectId, RobotConfig};
+use crate::state::{ComponentId, ComponentSet, ObjectConfig, ObjectId, RobotConfig};
 
 /// The combined space M and the static facts that a primitive may read; never B, the obstacles.
 ///
@@ -52,6 +52,12 @@ pub trait Domain: Sized + Send + Sync + 'static {
     /// `mode`? Always if they are equal; also if the motion itself makes up the difference, as a hand that opens.
     fn may_go_on(&self, mode: &Self::Mode, next: &Self::Mode) -> bool {
         mode == next
+    }
+
+    /// The objects that go along with the robot wherever it goes in this mode. Where none are named, plans are improved
+    /// between the moves of objects, but not while something is carried.
+    fn carried(&self, _mode: &Self::Mode) -> ComponentSet {
+        ComponentSet::EMPTY
     }
 
     /// Metres the robot's working point must travel from `robot` until it can act on `object` at `at`,

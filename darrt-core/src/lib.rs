@@ -18,6 +18,7 @@
 //! A result is a [`verify::Solution`], and only the independent verifier can make one.
 
 pub mod budget;
+pub mod cost;
 pub mod distance;
 pub mod domain;
 pub mod error;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use darrt_core::budget::{Budget, Cancel, Stop};
+use darrt_core::cost::plan_seconds;
 use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
 use darrt_core::extend::ExtendOptions;
 use darrt_core::goal::Goal;
@@ -19,6 +20,7 @@ use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
 use darrt_core::space::Place;
 use darrt_core::verify::{Refusal, Solution, Verified, Verifier};
 use darrt_primitives::detour::Detour;
+use darrt_primitives::execution_time::ExecutionTime;
 use darrt_primitives::surroundings::NearPair;
 use darrt_primitives::validity::SceneValidity;
 
@@ -104,6 +106,8 @@ pub struct PlanResult {
     pub plan: Option<PlanFile>,
     /// What the verifier saw of that plan.
     pub proof: Option<Proof>,
+    /// Seconds that carrying it out takes, see [`ExecutionTime`].
+    pub execution_s: Option<f64>,
     /// How many plans were found, of which it is the cheapest; at most 1 unless plans were to be improved.
     pub plans: u64,
     /// Why it stopped.
@@ -264,6 +268,7 @@ fn result(
         nodes: outcome.nodes as u64,
     };
     let m = prepared.problem.domain();
+    let execution_s = outcome.solution.as_ref().map(|solution| plan_seconds(&ExecutionTime, m, solution.plan()));
     let judged = outcome.solution.map(Solution::into_parts).and_then(|(plan, verified)| {
         let judged = verified.evidence?.downcast().ok()?;
         Some((plan, Arc::<Judged>::unwrap_or_clone(judged)))
@@ -276,6 +281,7 @@ fn result(
     PlanResult {
         plan,
         proof,
+        execution_s,
         plans: 0,
         stop: outcome.stop,
         accounts: outcome.accounts,

@@ -27,6 +27,14 @@ const DRAWN_REACH: f64 = 0.78;
 const DRAWN_PAN: [f64; 2] = [-1.4, 0.45];
 /// The heaviest object that an arm carries, kilograms (Willow Garage, PR2 hardware specifications).
 const PAYLOAD_KG: f64 = 1.8;
+/// Speeds of the arm's joints, radians per second: the caps with which `MoveIt` plans for the PR2, which are below those of its
+/// description.
+const JOINT_SPEED_RAD_PER_S: [f64; 7] = [1.0, 1.0, 1.5, 1.5, 1.5, 1.5, 1.12];
+/// Metres and radians per second of the base with an empty hand: a careful indoor pace, half of the metre per second that the
+/// wheels can do.
+const BASE_SPEED: [f64; 2] = [0.5, 1.0];
+/// The same with something in the hand, at which simulated plates kept still between the fingers.
+const LOADED_BASE_SPEED: [f64; 2] = [0.3, 0.6];
 /// Held objects are rounded up to this when travel is bounded, metres.
 const HELD_STEP: f64 = 0.05;
 
@@ -331,5 +339,21 @@ impl Manipulator for Pr2 {
     fn joint_weights_m(&self) -> &[f64] {
         // About half of what each joint moves the hand in a bent posture.
         &[0.6, 0.6, 0.3, 0.4, 0.1, 0.2, 0.05]
+    }
+
+    /// The slowest joint decides for the arm. The wheels drive and turn the base with what speed they have, so the times of
+    /// both add up; and they do so while the arm rests, so base and arm add up too.
+    fn duration_s(
+        &self,
+        a: &Configuration<ArmConfiguration>,
+        b: &Configuration<ArmConfiguration>,
+        is_loaded: bool,
+    ) -> f64 {
+        let joints = crate::arm::joint_differences(&self.arm.limits, &a.arm, &b.arm);
+        let arm_s = joints.iter().zip(&JOINT_SPEED_RAD_PER_S).map(|(d, speed)| d.abs() / speed).fold(0.0, f64::max);
+        let drive_m = (b.base[0] - a.base[0]).hypot(b.base[1] - a.base[1]);
+        let turn_rad = darrt_core::space::so2::turn(a.base[2], b.base[2]).abs();
+        let [drive, turn] = if is_loaded { LOADED_BASE_SPEED } else { BASE_SPEED };
+        arm_s + drive_m / drive + turn_rad / turn
     }
 }

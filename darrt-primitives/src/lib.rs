@@ -22,6 +22,7 @@ pub mod arm_space;
 pub mod contact;
 pub mod detour;
 pub mod error;
+pub mod execution_time;
 pub mod goal;
 pub mod grasp;
 pub mod kinematics;

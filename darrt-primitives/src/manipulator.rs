@@ -27,6 +27,9 @@ impl<const N: usize> JointVector for [f64; N] {
     }
 }
 
+/// Speed of a robot that says nothing of its speeds, metres per second: that of a person who walks slowly.
+const DEFAULT_SPEED_M_PER_S: f64 = 0.5;
+
 /// Configuration of base and arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Configuration<J> {
@@ -162,4 +165,11 @@ pub trait Manipulator: Send + Sync + 'static {
 
     /// Typical metres of hand travel per unit of each joint: weights of the arm's distance.
     fn joint_weights_m(&self) -> &[f64];
+
+    /// Seconds from `a` to `b` on the straight line between them at the speeds that the robot is planned with, with something
+    /// in its hand or with none; starting and stopping not counted. By default the bound on the travel at half a metre per
+    /// second.
+    fn duration_s(&self, a: &Configuration<Self::Joints>, b: &Configuration<Self::Joints>, _is_loaded: bool) -> f64 {
+        self.travel_m(a, b, 0.0) / DEFAULT_SPEED_M_PER_S
+    }
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use darrt_core::domain::Domain;
-use darrt_core::state::{ComponentId, ObjectId, State};
+use darrt_core::state::{ComponentId, ComponentSet, ObjectId, State};
 use darrt_geom::body::Body;
 use darrt_geom::error::GeomError;
 use darrt_geom::scene::FixedBody;
@@ -337,6 +337,10 @@ impl<M: Manipulator> Domain for Tabletop<M> {
     fn may_go_on(&self, mode: &Mode, next: &Mode) -> bool {
         // An empty hand may open or close wherever it stands.
         mode == next || mode.opened_to(next.gap_m()).is_some_and(|mode| mode == *next)
+    }
+
+    fn carried(&self, mode: &Mode) -> ComponentSet {
+        mode.held().map_or(ComponentSet::EMPTY, |held| ComponentSet::EMPTY.with(ComponentId::Object(held.object)))
     }
 
     fn reach(&self, robot: &Configuration<M::Joints>, _: ObjectId, at: &Isometry3<f64>) -> f64 {

@@ -104,17 +104,29 @@ pub struct PrimitiveRecord {
     pub ends: BTreeMap<String, u64>,
 }
 
-/// The length of the plan.
+/// How good the plan is. What older records do not hold is absent.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PlanLength {
+pub struct PlanQuality {
     /// Steps.
     pub steps: usize,
+    /// Seconds of execution, as [`ExecutionTime`](darrt_primitives::execution_time::ExecutionTime) counts them.
+    #[serde(default)]
+    pub execution_s: Option<f64>,
     /// Way of the base, metres.
     pub base_m: f64,
+    /// Turns of the base, degrees.
+    #[serde(default)]
+    pub turn_deg: Option<f64>,
+    /// Turns of all joints of the arm together, radians.
+    #[serde(default)]
+    pub arm_rad: Option<f64>,
     /// Way of the hand as seen from the base, metres.
     pub hand_m: f64,
     /// Way of the objects, metres.
     pub object_m: f64,
+    /// Where two bodies that may not touch are nearest, metres.
+    #[serde(default)]
+    pub clearance_m: Option<f64>,
 }
 
 /// One run.
@@ -149,7 +161,7 @@ pub struct Record {
     /// Plans that the verifier refused.
     pub refused: u64,
     /// The plan, if there is one.
-    pub plan: Option<PlanLength>,
+    pub plan: Option<PlanQuality>,
     /// Metres from the goal to the nearest state; absent if that is not known.
     pub nearest_to_goal_m: Option<f64>,
     /// What each primitive did.
@@ -195,7 +207,7 @@ impl Record {
             restarts: result.restarts,
             attempts,
             refused: result.accounts.refused,
-            plan: length(result),
+            plan: quality(result),
             nearest_to_goal_m: Some(result.nearest_to_goal).filter(|metres| metres.is_finite()),
             primitives: primitives(result),
             machine,
@@ -220,11 +232,20 @@ impl Record {
     }
 }
 
-fn length(result: &PlanResult) -> Option<PlanLength> {
+fn quality(result: &PlanResult) -> Option<PlanQuality> {
     let story = Story::of_plan(result.plan.as_ref()?).ok()?;
     let travel = story.steps.iter().fold(Travel::default(), |sum, step| sum.plus(&Travel::of(&story, step)));
-    let (base_m, hand_m, object_m) = (travel.base_m, travel.hand_m, travel.object_m);
-    Some(PlanLength { steps: story.steps.len(), base_m, hand_m, object_m })
+    let nearest = result.proof.as_ref().and_then(|proof| proof.smallest_clearance.as_ref());
+    Some(PlanQuality {
+        steps: story.steps.len(),
+        execution_s: result.execution_s,
+        base_m: travel.base_m,
+        turn_deg: Some(travel.base_turn.to_degrees()),
+        arm_rad: Some(travel.arm_turn),
+        hand_m: travel.hand_m,
+        object_m: travel.object_m,
+        clearance_m: nearest.map(|nearest| nearest.distance_m),
+    })
 }
 
 fn primitives(result: &PlanResult) -> Vec<PrimitiveRecord> {
@@ -274,7 +295,16 @@ pub(crate) mod tests {
             restarts: 0,
             attempts: vec![seed.saturating_add(100)],
             refused: 0,
-            plan: solved.then_some(PlanLength { steps: 5, base_m: 1.0, hand_m: 2.0, object_m: 3.0 }),
+            plan: solved.then_some(PlanQuality {
+                steps: 5,
+                execution_s: Some(30.0),
+                base_m: 1.0,
+                turn_deg: Some(90.0),
+                arm_rad: Some(4.0),
+                hand_m: 2.0,
+                object_m: 3.0,
+                clearance_m: Some(0.02),
+            }),
             nearest_to_goal_m: (!solved).then_some(0.5),
             primitives: vec![PrimitiveRecord {
                 name: "Pick".to_owned(),

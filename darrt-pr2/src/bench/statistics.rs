@@ -3,7 +3,7 @@
 use super::bootstrap;
 use super::collection::{Collection, family_name};
 use super::digest::digest_bits;
-use super::record::Record;
+use super::record::{PlanQuality, Record};
 use super::survival::{Observation, Quantile, Survival};
 use super::variant::VARIANTS;
 use crate::problem_file::builtin_names;
@@ -34,8 +34,48 @@ pub struct Summary {
     pub restarts: u64,
     /// Median steps of the plans that were found; `None` without any.
     pub steps: Option<f64>,
+    /// How good the plans are that were found.
+    pub quality: Quality,
     /// Mean time that the paper reports, seconds.
     pub paper_s: Option<f64>,
+}
+
+/// Medians over the plans that were found; `None` without any, or where older results do not hold the figure.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Quality {
+    /// Way of the base, metres.
+    pub base_m: Option<f64>,
+    /// Its 95th percentile, metres.
+    pub base_95_m: Option<f64>,
+    /// Turns of the base, degrees.
+    pub turn_deg: Option<f64>,
+    /// Turns of all joints of the arm together, radians.
+    pub arm_rad: Option<f64>,
+    /// Way of the hand as seen from the base, metres.
+    pub hand_m: Option<f64>,
+    /// Seconds of execution.
+    pub execution_s: Option<f64>,
+    /// Where two bodies that may not touch are nearest, metres.
+    pub clearance_m: Option<f64>,
+}
+
+impl Quality {
+    fn of(runs: &[&Record]) -> Self {
+        let quantile = |q: f64, figure: fn(&PlanQuality) -> Option<f64>| {
+            let plans = runs.iter().filter_map(|run| run.plan.as_ref());
+            let seen: Vec<_> = plans.filter_map(figure).map(|value| Observation { value, is_event: true }).collect();
+            Survival::of(&seen).quantile(q).value()
+        };
+        Self {
+            base_m: quantile(0.5, |plan| Some(plan.base_m)),
+            base_95_m: quantile(0.95, |plan| Some(plan.base_m)),
+            turn_deg: quantile(0.5, |plan| plan.turn_deg),
+            arm_rad: quantile(0.5, |plan| plan.arm_rad),
+            hand_m: quantile(0.5, |plan| Some(plan.hand_m)),
+            execution_s: quantile(0.5, |plan| plan.execution_s),
+            clearance_m: quantile(0.5, |plan| plan.clearance_m),
+        }
+    }
 }
 
 impl Summary {
@@ -58,6 +98,7 @@ impl Summary {
             nodes: half_solved(runs, |run| run.nodes as f64),
             restarts: runs.iter().map(|run| run.restarts).sum(),
             steps: Survival::of(&steps).quantile(0.5).value(),
+            quality: Quality::of(runs),
             paper_s: first.paper_s,
         })
     }
@@ -119,5 +160,20 @@ mod tests {
         assert_eq!(bowl.time.quantile(0.5), Quantile::Beyond(60.0));
         assert_eq!(bowl.time.quantile(0.25), Quantile::At(3.0));
         assert_eq!((bowl.iterations, bowl.steps), (None, Some(5.0)));
+        assert_eq!((bowl.quality.turn_deg, bowl.quality.execution_s), (Some(90.0), Some(30.0)));
+    }
+
+    /// Results of a program that did not know the figure say nothing, not zero.
+    #[test]
+    fn what_older_results_do_not_hold_is_absent() {
+        let mut old = sample("bowl", "full", 0, 1.0, true);
+        if let Some(plan) = &mut old.plan {
+            (plan.turn_deg, plan.base_m) = (None, 3.0);
+        }
+        let text = serde_json::to_string(&old).unwrap().replace(r#""turn_deg":null,"#, "");
+        let (old, new): (Record, _) = (serde_json::from_str(&text).unwrap(), sample("bowl", "full", 1, 1.0, true));
+        assert_eq!(Quality::of(&[&old]).turn_deg, None);
+        let both = Quality::of(&[&old, &new]);
+        assert_eq!((both.turn_deg, both.base_m, both.base_95_m), (Some(90.0), Some(1.0), Some(3.0)));
     }
 }

@@ -38,7 +38,9 @@ pub(super) fn run(options: &BenchOptions, output: &mut Output) -> Result<Exit, F
     let (all, end) = if options.merge.is_empty() { measure(options, output)? } else { (merge(options)?, End::All) };
     told.write(&all)?;
     if !options.quiet {
-        output.print(&bench_table::table(&summaries(&all)))?;
+        let summaries = summaries(&all);
+        output.print(&bench_table::table(&summaries))?;
+        output.print(&bench_table::plans(&summaries))?;
         let words = told.words();
         if !words.is_empty() {
             output.print(&words)?;

@@ -1,4 +1,4 @@
-//! The results of a benchmark as a table.
+//! The results of a benchmark as tables.
 
 use super::table;
 use crate::bench::statistics::Summary;
@@ -36,6 +36,46 @@ pub(super) fn table(summaries: &[Summary]) -> String {
         ""
     };
     format!("{}{note}\n", text.trim_end())
+}
+
+/// The plans: one row per problem and variant, medians.
+pub(super) fn plans(summaries: &[Summary]) -> String {
+    let header = [
+        "problem",
+        "variant",
+        "steps",
+        "driven m",
+        "95th",
+        "turned \u{b0}",
+        "arm rad",
+        "hand m",
+        "execution s",
+        "clearance mm",
+    ];
+    let mut table = table::with_header(header);
+    let mut problem = "";
+    for summary in summaries {
+        let name = if summary.problem == problem { "" } else { summary.problem.as_str() };
+        problem = &summary.problem;
+        let quality = &summary.quality;
+        table.add_row([
+            name.to_owned(),
+            summary.variant.clone(),
+            whole(summary.steps),
+            hundredths(quality.base_m),
+            hundredths(quality.base_95_m),
+            whole(quality.turn_deg),
+            whole(quality.arm_rad),
+            hundredths(quality.hand_m),
+            whole(quality.execution_s),
+            whole(quality.clearance_m.map(|metres| metres * 1e3)),
+        ]);
+    }
+    table::finished(table, [2, 3, 4, 5, 6, 7, 8, 9])
+}
+
+fn hundredths(value: Option<f64>) -> String {
+    value.map_or_else(|| "\u{2013}".to_owned(), |value| format!("{value:.2}"))
 }
 
 fn row(name: &str, summary: &Summary) -> [String; 11] {

@@ -87,6 +87,7 @@ mod tests {
         accounts.count(&[Bucket::NoGrasp, Bucket::Accepted, Bucket::NotUseful], 1, false, None);
         let result = PlanResult {
             proof: None,
+            execution_s: None,
             plan: None,
             plans: 0,
             stop: Stop::TimeLimit,

@@ -3,6 +3,7 @@
 use nalgebra::Isometry3;
 
 use super::story::{Snapshot, Story, StoryStep};
+use crate::arm::LimitKind;
 
 /// Lengths of ways in metres and sums of turns in radians, over the states of one step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -15,6 +16,8 @@ pub struct Travel {
     pub hand_m: f64,
     /// Turns of the hand as seen from the base.
     pub hand_turn: f64,
+    /// Turns of all joints of the planned arm together.
+    pub arm_turn: f64,
     /// Way of the object that moves farthest, in the world.
     pub object_m: f64,
     /// Turns of that object.
@@ -35,6 +38,7 @@ impl Travel {
             let ([x, y, yaw], [u, v, w]) = (before.robot.base, after.robot.base);
             travel.base_m += (u - x).hypot(v - y);
             travel.base_turn += turned(w - yaw);
+            travel.arm_turn += joint_turns(story, before, after);
             let hand = [before, after].map(|snapshot| base_from_tool(story, snapshot));
             add(&mut travel.hand_m, &mut travel.hand_turn, &hand);
         }
@@ -60,6 +64,7 @@ impl Travel {
             base_turn: self.base_turn + other.base_turn,
             hand_m: self.hand_m + other.hand_m,
             hand_turn: self.hand_turn + other.hand_turn,
+            arm_turn: self.arm_turn + other.arm_turn,
             object_m: self.object_m + other.object_m,
             object_turn: self.object_turn + other.object_turn,
             object: if other.object_m > self.object_m { other.object } else { self.object },
@@ -105,6 +110,14 @@ fn add(way: &mut f64, turn: &mut f64, [before, after]: &[Isometry3<f64>; 2]) {
 
 fn base_from_tool(story: &Story, snapshot: &Snapshot) -> Isometry3<f64> {
     crate::forward::world_from_base(&snapshot.robot.base).inverse() * story.world_from_tool(snapshot)
+}
+
+/// How far the joints of the planned arm turn between two states, summed; a continuous joint goes the short way round.
+fn joint_turns(story: &Story, before: &Snapshot, after: &Snapshot) -> f64 {
+    let arm = |snapshot: &Snapshot| snapshot.robot.arms.get(story.side.index()).copied();
+    let (Some(a), Some(b)) = (arm(before), arm(after)) else { return 0.0 };
+    let limits = story.model.limits(story.side, LimitKind::Hard);
+    crate::arm::joint_differences(&limits, &a, &b).iter().map(|turn| turn.abs()).sum()
 }
 
 /// The size of a turn, the short way round.

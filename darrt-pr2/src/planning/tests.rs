@@ -1,4 +1,6 @@
+use darrt_core::cost::ExecutionCost;
 use darrt_core::observe::Silent;
+use darrt_core::solve::solve;
 
 use super::*;
 use crate::problem_file::builtin;
@@ -102,4 +104,37 @@ fn several_searches_are_restarted_although_nothing_says_when() {
     both.problem.sampling.goal_bias = 0.0;
     both.problem.sampling.object_share = 0.0;
     assert_eq!(planned(&both).restarts, 1);
+}
+
+/// The law of [`ExecutionCost`] on every step of plans, and that no drive is faster than the base.
+#[test]
+fn a_part_of_a_step_takes_no_longer_than_the_whole() {
+    for name in ["bowl", "simple-plate"] {
+        let file = builtin(name).unwrap();
+        let prepared = prepare(&file).unwrap();
+        let strategy = strategy(&file.sampling, file.sampling.sampler, file.sampling.distance).unwrap();
+        let outcome = solve(&prepared.problem, &strategy, &SolveOptions::default(), &mut Silent);
+        let (plan, _) = outcome.solution.unwrap().into_parts();
+        let m = prepared.problem.domain();
+        let mut here = plan.start().clone();
+        let mut sum_s = 0.0;
+        for step in plan.steps() {
+            let seconds = |share: f64| ExecutionTime.seconds(m, &step.instance, &here, share * step.until);
+            let mut before_s = 0.0;
+            for share in [0.0, 0.1, 0.35, 0.8, 0.99, 1.0] {
+                assert!(
+                    seconds(share) >= before_s - 1e-9 && seconds(share).is_finite(),
+                    "{} at {share}",
+                    step.instance.label
+                );
+                before_s = seconds(share);
+            }
+            sum_s += before_s;
+            let end = step.instance.at(m, step.until, &here);
+            let drive_m = (end.robot.base[0] - here.robot.base[0]).hypot(end.robot.base[1] - here.robot.base[1]);
+            assert!(before_s >= drive_m / 0.5, "{before_s} s for {drive_m} m");
+            here = end;
+        }
+        assert!((plan_seconds(&ExecutionTime, m, &plan) - sum_s).abs() < 1e-9);
+    }
 }

@@ -148,6 +148,10 @@ impl Domain for PuckWorld {
         }
     }
 
+    fn carried(&self, mode: &Mode) -> ComponentSet {
+        mode.held().map_or(ComponentSet::EMPTY, |(id, _)| ComponentSet::EMPTY.with(ComponentId::Object(id)))
+    }
+
     fn reach(&self, robot: &Point, object: ObjectId, at: &Point) -> f64 {
         (plane::distance(robot, at) - self.touch_distance(object)).max(0.0)
     }
