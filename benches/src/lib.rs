@@ -17,6 +17,7 @@
 
 pub mod arm;
 pub mod boxes;
+pub mod drives;
 pub mod pucks;
 pub mod room;
 pub mod trees;

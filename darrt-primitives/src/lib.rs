@@ -10,7 +10,7 @@
 //! | how far may what is held lean? | [`tilt`] |
 //! | how does a wish become motions? | [`action`], [`arm_motion`] |
 //! | who may touch whom, and what is too near? | [`surroundings`] |
-//! | what is in the way, and is there a way around? | [`validity`], [`detour`] |
+//! | what is in the way, and is there a way around? | [`validity`], [`detour`], [`base_path`] |
 //! | what is asked for, and what is a goal? | [`wish`], [`goal`] |
 //! | is my robot right? | [`laws`], and `testing` (feature `testing`) |
 //!
@@ -19,6 +19,7 @@
 pub mod action;
 pub mod arm_motion;
 pub mod arm_space;
+pub mod base_path;
 pub mod contact;
 pub mod detour;
 pub mod error;

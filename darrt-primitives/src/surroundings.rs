@@ -16,6 +16,7 @@ use darrt_geom::scene::FixedBody;
 use darrt_geom::shape::Shape;
 use nalgebra::Isometry3;
 
+use crate::base_path::floor_plan::FloorPlan;
 use crate::manipulator::{LinkGroup, Manipulator};
 use crate::mode::{Contacts, TouchReason};
 use crate::tabletop::{Movable, Support, TabletopState};
@@ -49,6 +50,8 @@ pub struct Surroundings {
     hand_links: BodySet,
     finger_links: BodySet,
     all_links: BodySet,
+    /// The fixed bodies seen from above.
+    floor_plan: Arc<FloorPlan>,
     /// The links of the base in its frame.
     base_from_link: OnceLock<Vec<(BodyIndex, Isometry3<f64>)>>,
     workers: Mutex<Vec<Worker>>,
@@ -125,6 +128,7 @@ impl Surroundings {
             exceptions: Vec::new(),
             links,
             objects,
+            floor_plan: Arc::new(FloorPlan::new(fixed)),
             base_from_link: OnceLock::new(),
             workers: Mutex::new(Vec::new()),
         })
@@ -157,6 +161,7 @@ impl Surroundings {
             hand_links: self.hand_links,
             finger_links: self.finger_links,
             all_links: self.all_links,
+            floor_plan: Arc::clone(&self.floor_plan),
             base_from_link: OnceLock::new(),
             workers: Mutex::new(Vec::new()),
         }
@@ -171,6 +176,11 @@ impl Surroundings {
     /// between them.
     pub(crate) fn unseen_m(&self) -> f64 {
         self.unseen_m
+    }
+
+    /// The fixed bodies seen from above.
+    pub(crate) fn floor_plan(&self) -> &FloorPlan {
+        &self.floor_plan
     }
 
     /// How strict the check is.

@@ -6,3 +6,4 @@ pub mod gantry;
 pub mod scene_oracle;
 pub mod strategies;
 pub mod table;
+pub mod yardstick;

@@ -111,6 +111,13 @@ impl Surroundings {
         SHARES.iter().rposition(is_more).unwrap_or(0)
     }
 
+    /// How far the robot and what it holds keep from everything else with this care, metres, and how far at least.
+    pub(crate) fn drive_margins_m(&self, care: usize) -> [f64; 2] {
+        let SafetySettings { robot_margin_m, held_margin_m, least_margin_m, .. } = self.strictness.safety;
+        let share = SHARES.get(care).copied().unwrap_or(1.0);
+        [(share * robot_margin_m.max(held_margin_m)).max(least_margin_m), least_margin_m]
+    }
+
     /// How far every pair keeps in this mode during an instance with these contacts: into `keep`.
     pub(super) fn keep<M: Manipulator>(
         &self,

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use darrt_core::error::Error;
 use darrt_core::state::{ObjectId, State};
 use darrt_geom::body::Body;
+use darrt_geom::scene::FixedBody;
 use darrt_geom::shape::Shape;
 use darrt_geom::support::SupportSurface;
 use nalgebra::{Point2, Vector2, Vector3};
@@ -74,6 +75,18 @@ pub fn altered_table(
     robot: Gantry,
     change: impl FnOnce(&mut [(ObjectSpace, Movable)], &mut ActionSettings<motion::Joints>),
 ) -> Result<Table, TableError> {
+    furnished_table(robot, &[], change)
+}
+
+/// The same with `fixed` bodies in the room. The tables themselves have none.
+///
+/// # Errors
+/// As [`table`], and for a body that cannot be used.
+pub fn furnished_table(
+    robot: Gantry,
+    fixed: &[FixedBody],
+    change: impl FnOnce(&mut [(ObjectSpace, Movable)], &mut ActionSettings<motion::Joints>),
+) -> Result<Table, TableError> {
     let surface =
         |name: &str, x| SupportSurface::rectangle(name, Point2::new(x, 0.0), Vector2::new(0.8, 1.2), 0.0, HEIGHT_M);
     let surfaces = [surface("left table", -0.5)?, surface("right table", 0.5)?];
@@ -87,7 +100,7 @@ pub fn altered_table(
     let supports = surfaces.iter().map(|surface| Support { surface: surface.clone(), bodies: Vec::new() });
     let mut settings = settings();
     change(&mut objects, &mut settings);
-    Ok(Tabletop::new(Arc::new(robot), space, objects, supports.collect(), &[], settings)?)
+    Ok(Tabletop::new(Arc::new(robot), space, objects, supports.collect(), fixed, settings)?)
 }
 
 /// The honest gantry at the tables.

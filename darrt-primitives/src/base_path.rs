@@ -1,0 +1,182 @@
+//! The shortest way of the base between two poses: the robot with its arm at rest moves as one rigid body in the plane.
+//!
+//! | question | file |
+//! |---|---|
+//! | what does a solid look like from above, at these heights? | [`section`], [`outline`] |
+//! | where are the fixed bodies? | [`floor_plan`] |
+//! | how far is the robot from the obstacles? | [`footprint`] |
+//! | is a straight drive clear, and what does it cost? | [`sight`], exactly [`drive`] |
+//! | which poses are tried, and in what order? | [`lattice`], [`bound`], [`search`] |
+//! | how is the middle of a narrow door found? | [`nudge`] |
+//! | how does a way become short? | [`shorten`] |
+//!
+//! A* over a lattice of places and yaws in the signed distances of outlines, then shortcuts and pulling taut, then the exact
+//! check of every straight drive. A coarse lattice first, a finer one where it finds nothing. No random choice, no clock.
+
+use crate::manipulator::Manipulator;
+use crate::tabletop::{Tabletop, TabletopState};
+
+mod bound;
+mod drive;
+pub(crate) mod floor_plan;
+mod footprint;
+mod lattice;
+mod nudge;
+mod outline;
+mod search;
+mod section;
+mod shorten;
+mod sight;
+
+use bound::Bounds;
+use drive::Drives;
+use footprint::Footprint;
+use lattice::Lattice;
+use nalgebra::Vector2;
+use search::{Outcome, Search};
+use sight::{Judge, Sight, Stop, Terms};
+
+/// What a way of the base costs, and how hard it is looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BasePath {
+    /// How many times as much a metre counts where something is as near as the least margin, at least 1; in proportion up
+    /// to the wanted margin, where it counts once. So much farther it goes at most to keep that.
+    pub tight: f64,
+    /// Metres of driving that a radian of turning is worth.
+    pub turn_m: f64,
+    /// Poses that are looked at before it gives up.
+    pub looks: usize,
+}
+
+impl Default for BasePath {
+    fn default() -> Self {
+        Self { tight: 1.2, turn_m: 0.2, looks: 60_000 }
+    }
+}
+
+/// A lattice: distance between rows in metres, between yaws in degrees.
+#[derive(Debug, Clone, Copy)]
+struct Level {
+    spacing_m: f64,
+    step_deg: f64,
+}
+
+/// Coarse first. HEURISTIC: a third of the robot's width and a twelfth of a half turn find nearly all ways at once.
+const LEVELS: [Level; 2] = [Level { spacing_m: 0.1, step_deg: 15.0 }, Level { spacing_m: 0.05, step_deg: 7.5 }];
+
+/// Most cells of a lattice; where there are more, the rows are farther apart.
+const CELLS: f64 = 2e6;
+
+/// Expansions in which the goal must not turn out to be enclosed.
+const FROM_GOAL: usize = 100;
+
+/// What is added to the least margin, and how finely a drive is looked at, metres: the exact check then finds what it asks for.
+const SPARE_M: f64 = 5e-4;
+/// What looks nearer than the least margin by more than this looks nearer than it is, metres.
+const DOUBT_M: f64 = 1e-4;
+
+impl BasePath {
+    /// Poses of the base from that of `from`, the first, to `to`, the last, both bit for bit; straight drives lie between
+    /// them. The arm, the objects and what is held stand as in `from`, whose mode is that on the way. Both ends are
+    /// clear with this [care](darrt_core::validity::Validity::most_care), and so is the way. `None` if none is found, or
+    /// if it would be much longer than with less care.
+    pub fn find<M: Manipulator>(
+        &self,
+        m: &Tabletop<M>,
+        care: usize,
+        from: &TabletopState<M>,
+        to: &[f64; 3],
+    ) -> Option<Vec<[f64; 3]>> {
+        let around = m.surroundings();
+        let [wanted_m, least_margin_m] = around.drive_margins_m(care);
+        let plan = around.floor_plan();
+        let mut footprint = Footprint::new(m, from, plan, wanted_m);
+        let mut least_m = least_margin_m + SPARE_M;
+        // What is exactly known to be clear may not look so from above.
+        let mut is_doubtful = plan.has_gaps;
+        for end in [&from.robot.base, to] {
+            is_doubtful |= footprint.forgive(end, least_margin_m - DOUBT_M);
+            least_m = least_m.min(footprint.distance_m(end, least_m, f64::NEG_INFINITY));
+        }
+        let [wanted_m, _] = around.drive_margins_m(around.most_care()).map(|margin| margin.max(wanted_m) + SPARE_M);
+        let terms = Terms { least_m, wanted_m, resolution_m: SPARE_M, turn_m: self.turn_m, tight: self.tight.max(1.0) };
+        let ends = [&from.robot.base, to];
+        around.with_worker(|worker| {
+            let mut drives = Drives::new(m, from, worker);
+            for level in LEVELS {
+                let looks = footprint.looks() + self.looks;
+                if !is_doubtful {
+                    let Some(way) = way_along(level, ends, &mut Sight::new(&mut footprint, terms, None), looks) else {
+                        continue;
+                    };
+                    if is_clear(&way, |a, b| drives.is_clear(care, a, b)) {
+                        return Some(way);
+                    }
+                    if care > 0 {
+                        return None;
+                    }
+                    // Seen from above it is clear, but not in space.
+                    is_doubtful = true;
+                }
+                let judge: &mut Judge<'_> = &mut |a, b| drives.is_clear(0, a, b);
+                let way = way_along(level, ends, &mut Sight::new(&mut footprint, terms, Some(judge)), looks);
+                if let Some(way) = way {
+                    return is_clear(&way, |a, b| drives.is_clear(care, a, b)).then_some(way);
+                }
+            }
+            None
+        })
+    }
+}
+
+/// Are all drives of a way clear?
+fn is_clear(way: &[[f64; 3]], mut judge: impl FnMut(&[f64; 3], &[f64; 3]) -> bool) -> bool {
+    way.windows(2).all(|pair| matches!(pair, [a, b] if judge(a, b)))
+}
+
+/// A short way along a lattice, as long as not more than `looks` poses have been looked at.
+fn way_along(
+    level: Level,
+    [start, goal]: [&[f64; 3]; 2],
+    sight: &mut Sight<'_>,
+    looks: usize,
+) -> Option<Vec<[f64; 3]>> {
+    let stops = [sight.stop(start)?, sight.stop(goal)?];
+    let step_rad = level.step_deg.to_radians();
+    let lattice = lattice(level, &stops, sight.footprint);
+    let [start_place, goal_place] = stops.map(|stop| lattice.nearest(&stop.at).place);
+    let bounds = Bounds::around(&lattice, sight.footprint, [start_place, goal_place], lattice.spacing_m())?;
+    // The other way round first, for a little while: mostly it is the goal that is enclosed, if one end is.
+    let back = Bounds::straight(&lattice, start_place);
+    let [start, goal] = stops;
+    let way = match Search::new(sight, &lattice, &back, step_rad, [goal, start]).run(FROM_GOAL, looks) {
+        Outcome::Enclosed => return None,
+        Outcome::Found(mut way) => {
+            way.reverse();
+            way
+        }
+        Outcome::Stopped => match Search::new(sight, &lattice, &bounds, step_rad, stops).run(usize::MAX, looks) {
+            Outcome::Found(way) => way,
+            Outcome::Enclosed | Outcome::Stopped => return None,
+        },
+    };
+    shorten::shorten(sight, &way).map(|way| way.poses())
+}
+
+/// Rows in which the robot can go around all obstacles, within its bounds.
+fn lattice(level: Level, stops: &[Stop; 2], footprint: &Footprint) -> Lattice {
+    let step_rad = level.step_deg.to_radians();
+    let [start, goal] = stops.map(|stop| Vector2::new(stop.at[0], stop.at[1]));
+    let beside = Vector2::repeat(2.0 * footprint.reach_m() + sight::FAR_M);
+    let (mut low, mut high) = (start.inf(&goal), start.sup(&goal));
+    if let Some([from, to]) = footprint.extent() {
+        (low, high) = (low.inf(&(from - beside)), high.sup(&(to + beside)));
+    }
+    let position = footprint.bounds().position();
+    low = low.sup(&Vector2::from(*position.lower()));
+    high = high.inf(&Vector2::from(*position.upper()));
+    let yaws = std::f64::consts::TAU / step_rad + 2.0;
+    let area_m2 = (high.x - low.x) * (high.y - low.y);
+    let spacing_m = level.spacing_m.max((area_m2 * yaws / CELLS).sqrt());
+    Lattice::new(&start, [low, high], stops.map(|stop| stop.at[2]), spacing_m, step_rad)
+}

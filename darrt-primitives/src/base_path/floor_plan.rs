@@ -1,0 +1,86 @@
+//! The fixed bodies as a base sees them that moves on the floor: outlines, and the heights from which to which they reach.
+
+use darrt_geom::scene::FixedBody;
+use darrt_geom::shape::Shape;
+
+use super::outline::Outline;
+use super::section::Placed;
+
+/// What a base could run into.
+#[derive(Debug, Clone)]
+pub(crate) struct Obstacle {
+    /// Seen from above.
+    pub(crate) outline: Outline,
+    /// Lowest and highest point, metres.
+    pub(crate) z_m: [f64; 2],
+}
+
+impl Obstacle {
+    /// A solid, seen from above.
+    pub(crate) fn new(solid: &Placed<'_>) -> Option<Self> {
+        solid.section(solid.z_m).map(|outline| Self { outline, z_m: solid.z_m })
+    }
+}
+
+/// The fixed bodies of a scene.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct FloorPlan {
+    pub(crate) obstacles: Vec<Obstacle>,
+    /// Some bodies are not in here: meshes, which are surfaces, and slanting half spaces.
+    pub(crate) has_gaps: bool,
+}
+
+impl FloorPlan {
+    /// The plan of a scene.
+    pub(crate) fn new(fixed: &[FixedBody]) -> Self {
+        let mut plan = Self::default();
+        for body in fixed {
+            for part in &body.body.parts {
+                match &part.shape {
+                    Shape::Mesh(_) => plan.has_gaps = true,
+                    Shape::HalfSpace { normal, .. } => {
+                        // A level one stays as far below as it is, wherever the base goes.
+                        let normal = body.world_from_body * (part.body_from_shape * normal);
+                        plan.has_gaps |= normal.x != 0.0 || normal.y != 0.0;
+                    }
+                    _ => {
+                        let solid = Placed::new(part, &body.world_from_body);
+                        plan.obstacles.extend(solid.as_ref().and_then(Obstacle::new));
+                    }
+                }
+            }
+        }
+        plan
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use darrt_geom::body::{Body, Part};
+    use nalgebra::{Isometry3, Unit, Vector3};
+
+    fn fixed(shape: Shape) -> FixedBody {
+        FixedBody { body: Body::single("it", shape).unwrap(), world_from_body: Isometry3::translation(1.0, 0.0, 0.5) }
+    }
+
+    #[test]
+    fn what_has_an_outline_is_in_the_plan_and_the_rest_is_missed() {
+        let solid = fixed(Shape::cuboid(Vector3::new(0.5, 0.5, 0.5)).unwrap());
+        let floor = fixed(Shape::half_space(Vector3::z_axis()).unwrap());
+        let plan = FloorPlan::new(&[solid.clone(), floor]);
+        assert!(!plan.has_gaps && plan.obstacles.len() == 1);
+        assert_eq!(plan.obstacles[0].z_m, [0.0, 1.0]);
+        let ramp = fixed(Shape::half_space(Unit::new_normalize(Vector3::new(0.1, 0.0, 1.0))).unwrap());
+        assert!(FloorPlan::new(&[solid, ramp]).has_gaps);
+    }
+
+    #[test]
+    fn a_body_of_several_parts_has_an_outline_for_each() {
+        let part =
+            |x| Part { shape: Shape::sphere(0.1).unwrap(), body_from_shape: Isometry3::translation(x, 0.0, 0.0) };
+        let body = Body::new("two", vec![part(0.0), part(1.0)]).unwrap();
+        let plan = FloorPlan::new(&[FixedBody { body, world_from_body: Isometry3::identity() }]);
+        assert_eq!(plan.obstacles.len(), 2);
+    }
+}

@@ -1,0 +1,276 @@
+//! A* over the lattice: the cheapest way between two poses along its rows and yaws.
+//!
+//! Cells are looked at when a neighbour is expanded. Where a pose is far from everything its neighbours are known to be clear
+//! without a look. A cell that collides in the middle of a narrow passage is moved within itself to where it does not.
+//!
+//! # Source
+//! Hart, Nilsson and Raphael, A formal basis for the heuristic determination of minimum cost paths, 1968; the weight on the
+//! bound: Pohl, First results on the effect of error in heuristic search, 1970.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use darrt_core::space::so2::turn;
+
+use super::bound::Bounds;
+use super::lattice::{AROUND, Cell, Lattice};
+use super::nudge::Room;
+use super::sight::{FAR_M, Sight, Stop};
+
+/// The bound on the rest of the way counts so many times: a way found costs at most so many times the cheapest of the lattice.
+const WEIGHT: f64 = 1.1;
+
+/// How far a cell may be moved in itself, as a share of the distance to the next one.
+const WITHIN: f64 = 0.6;
+
+/// Poses of the lattice from here on are connected with the goal, in rows and in steps of the yaw.
+const NEAR_ROWS: f64 = 1.6;
+
+/// How a search ended.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Outcome {
+    /// The poses of the way, both ends among them.
+    Found(Vec<[f64; 3]>),
+    /// All that can be reached has been seen.
+    Enclosed,
+    /// It was stopped.
+    Stopped,
+}
+
+/// What is known of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Known {
+    Unseen,
+    Blocked,
+    Node(u32),
+}
+
+/// A pose that can be reached.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    stop: Stop,
+    /// Is `stop.clear_m` what a look has shown, not what follows from a neighbour?
+    is_seen: bool,
+    is_closed: bool,
+    /// `None` for the goal.
+    cell: Option<Cell>,
+    /// Of the cheapest way found from the start, metres.
+    cost_m: f64,
+    /// What the rest costs at least, metres.
+    bound_m: f64,
+    parent: u32,
+    /// A pose on the way from the parent.
+    via: Option<[f64; 3]>,
+}
+
+/// A node to be expanded; the greatest is expanded first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Open {
+    total_m: f64,
+    cost_m: f64,
+    node: u32,
+}
+
+impl Eq for Open {}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Open {
+    fn cmp(&self, other: &Self) -> Ordering {
+        // Of equally promising ones the one that has come farthest, then the oldest.
+        let by_total = other.total_m.total_cmp(&self.total_m);
+        by_total.then(self.cost_m.total_cmp(&other.cost_m)).then(other.node.cmp(&self.node))
+    }
+}
+
+/// A search from a start to a goal.
+pub(super) struct Search<'a, 's> {
+    sight: &'a mut Sight<'s>,
+    lattice: &'a Lattice,
+    bounds: &'a Bounds<'a>,
+    room: Room,
+    step_rad: f64,
+    goal: [f64; 3],
+    /// By number of the cell.
+    known: Vec<Known>,
+    /// The goal, the start, and what was reached.
+    nodes: Vec<Node>,
+    open: BinaryHeap<Open>,
+}
+
+const GOAL: u32 = 0;
+const START: u32 = 1;
+
+impl<'a, 's> Search<'a, 's> {
+    /// Begins at `start`. `bounds` are those of the goal; yaws of the lattice are at most `step_rad` apart.
+    pub(super) fn new(
+        sight: &'a mut Sight<'s>,
+        lattice: &'a Lattice,
+        bounds: &'a Bounds<'a>,
+        step_rad: f64,
+        [start, goal]: [Stop; 2],
+    ) -> Self {
+        let room = Room { shift_m: WITHIN * lattice.spacing_m(), turn_rad: WITHIN * step_rad };
+        let known = vec![Known::Unseen; lattice.len()];
+        let (nodes, open) = (Vec::new(), BinaryHeap::new());
+        let mut search = Self { sight, lattice, bounds, room, step_rad, goal: goal.at, known, nodes, open };
+        search.add(goal, true, None);
+        search.add(start, true, Some(lattice.nearest(&start.at)));
+        search.arrive(START, START, 0.0, None);
+        search
+    }
+
+    /// Expands up to `expansions` nodes, as long as no more than `looks` poses have been looked at in all.
+    pub(super) fn run(&mut self, expansions: usize, looks: usize) -> Outcome {
+        let mut left = expansions;
+        while let Some(Open { node, cost_m, .. }) = self.open.pop() {
+            let Some(current) = self.node(node) else { continue };
+            if current.is_closed || current.cost_m < cost_m {
+                continue;
+            }
+            let Some(cell) = current.cell else { return Outcome::Found(self.way_to_goal()) };
+            if left == 0 || self.sight.footprint.looks() >= looks {
+                return Outcome::Stopped;
+            }
+            left -= 1;
+            self.expand(node, cell);
+        }
+        Outcome::Enclosed
+    }
+
+    fn node(&self, node: u32) -> Option<Node> {
+        self.nodes.get(node as usize).copied()
+    }
+
+    /// A new node, to which no way is known yet.
+    fn add(&mut self, stop: Stop, is_seen: bool, cell: Option<Cell>) -> u32 {
+        let to_goal = |cell: Cell| {
+            let turn_m = self.sight.terms.turn_m * turn(stop.at[2], self.goal[2]).abs();
+            self.bounds.metres(cell.place, self.lattice.place_number(cell.place)) + turn_m
+        };
+        let bound_m = cell.map_or(0.0, to_goal);
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "fewer nodes than cells, of which there are fewer than 2^32"
+        )]
+        let number = self.nodes.len() as u32;
+        let parent = number;
+        let node = Node { stop, is_seen, is_closed: false, cell, cost_m: f64::INFINITY, bound_m, parent, via: None };
+        self.nodes.push(node);
+        if let Some(slot) = cell.and_then(|cell| self.known.get_mut(self.lattice.number(cell))) {
+            *slot = Known::Node(number);
+        }
+        number
+    }
+
+    /// A way to `node` that costs `cost_m`: is it the cheapest so far?
+    fn arrive(&mut self, node: u32, parent: u32, cost_m: f64, via: Option<[f64; 3]>) {
+        let Some(slot) = self.nodes.get_mut(node as usize) else { return };
+        if cost_m < slot.cost_m && slot.bound_m.is_finite() {
+            (slot.cost_m, slot.parent, slot.via) = (cost_m, parent, via);
+            self.open.push(Open { total_m: cost_m + WEIGHT * slot.bound_m, cost_m, node });
+        }
+    }
+
+    fn expand(&mut self, number: u32, cell: Cell) {
+        let Some(mut here) = self.node(number) else { return };
+        here.is_closed = true;
+        if !here.is_seen && here.stop.clear_m < FAR_M / 2.0 {
+            // A look shows how far the neighbours are clear.
+            let seen_m = self.sight.footprint.distance_m(&here.stop.at, FAR_M, f64::NEG_INFINITY);
+            here.stop.clear_m = here.stop.clear_m.max(seen_m);
+            here.is_seen = true;
+        }
+        if let Some(slot) = self.nodes.get_mut(number as usize) {
+            *slot = here;
+        }
+        for step in AROUND {
+            if let Some(place) = self.lattice.step(cell.place, step) {
+                self.reach(number, &here, Cell { place, ..cell });
+            }
+        }
+        for yaw in self.lattice.turned(cell.yaw) {
+            if yaw != cell.yaw {
+                self.reach(number, &here, Cell { yaw, ..cell });
+            }
+        }
+        let rows = (0..2).map(|i| (self.goal[i] - here.stop.at[i]).abs() / self.lattice.spacing_m());
+        let turns = turn(here.stop.at[2], self.goal[2]).abs() / self.step_rad;
+        if rows.fold(turns, f64::max) <= NEAR_ROWS {
+            self.connect(number, &here, GOAL);
+        }
+    }
+
+    /// Tries the step from a node to a cell.
+    fn reach(&mut self, from: u32, here: &Node, cell: Cell) {
+        let number = self.lattice.number(cell);
+        let to = match self.known.get(number) {
+            Some(Known::Node(to)) => *to,
+            Some(Known::Unseen) => {
+                if let Some((stop, is_seen)) = self.look(here, cell) {
+                    self.add(stop, is_seen, Some(cell))
+                } else {
+                    if let Some(slot) = self.known.get_mut(number) {
+                        *slot = Known::Blocked;
+                    }
+                    return;
+                }
+            }
+            _ => return,
+        };
+        self.connect(from, here, to);
+    }
+
+    /// Where to stop in a cell beside a node, and whether that was looked at.
+    fn look(&mut self, here: &Node, cell: Cell) -> Option<(Stop, bool)> {
+        let at = self.lattice.pose(cell);
+        let known_m = here.stop.clear_m - self.sight.travel_m(&here.stop.at, &at);
+        if known_m >= self.sight.terms.wanted_m && self.sight.footprint.is_within(&at) {
+            return Some((Stop { at, clear_m: known_m }, false));
+        }
+        if self.bounds.metres(cell.place, self.lattice.place_number(cell.place)).is_infinite() {
+            return None;
+        }
+        let stop = self.sight.stop(&at).or_else(|| self.sight.stop_beside(&at, self.room));
+        stop.map(|stop| (stop, true))
+    }
+
+    /// Tries the drive from one node to another.
+    fn connect(&mut self, from: u32, here: &Node, to: u32) {
+        let Some(there) = self.node(to) else { return };
+        let open_m = self.sight.open_cost_m(&here.stop.at, &there.stop.at);
+        if there.is_closed || here.cost_m + open_m >= there.cost_m {
+            return;
+        }
+        if let Some(cost_m) = self.sight.cost_m(&here.stop, &there.stop) {
+            self.arrive(to, from, here.cost_m + cost_m, None);
+        } else if here.stop.clear_m.min(there.stop.clear_m) < self.sight.terms.wanted_m {
+            // In a narrow passage two poses in its middle may have no straight drive between them.
+            let middle = self.sight.between(&here.stop.at, &there.stop.at, 0.5);
+            let Some(via) = self.sight.stop_beside(&middle, self.room) else { return };
+            let first = self.sight.cost_m(&here.stop, &via);
+            if let Some(cost_m) = first.and_then(|first| Some(first + self.sight.cost_m(&via, &there.stop)?)) {
+                self.arrive(to, from, here.cost_m + cost_m, Some(via.at));
+            }
+        }
+    }
+
+    fn way_to_goal(&self) -> Vec<[f64; 3]> {
+        let mut way = Vec::new();
+        let mut number = GOAL;
+        while let Some(node) = self.node(number) {
+            way.push(node.stop.at);
+            way.extend(node.via);
+            if node.parent == number {
+                break;
+            }
+            number = node.parent;
+        }
+        way.reverse();
+        way
+    }
+}
