@@ -1,8 +1,8 @@
 //! Has the problem the means that its goal needs? Asked before the search, so that a goal for which a primitive or the
 //! grasps are missing is an error with a name instead of a search to the end of the budget.
 //!
-//! Only what is certain counts: an object rests until it is picked, a push leaves it on its surface, and only Place lets
-//! go of it.
+//! Only what is certain counts: an object rests until it is picked, a push leaves it on its surface or on one that lies flush
+//! with it, and only Place lets go of it.
 
 use crate::planning_error::PlanningError;
 use crate::problem_file::{GoalState, GoalTarget, Object, ObjectGoal, PrimitiveName, ProblemFile};
@@ -62,7 +62,8 @@ impl<'a> Means<'a> {
             return None;
         }
         let start = &self.object.on;
-        match goal.on.as_deref().filter(|on| on != start) {
+        let is_across = |on: &str| problem.surfaces_across(self.object).iter().any(|name| name == on);
+        match goal.on.as_deref().filter(|on| on != start && !is_across(on)) {
             Some(on) => Some(format!("{key} wants it on `{on}`, it starts on `{start}`, and {lack}")),
             None => self.push.err().map(|push| format!("{key} wants it to move, but {lack}, and {push}")),
         }
@@ -144,6 +145,31 @@ mod tests {
             p.goal.objects[0].at = Some(p.objects[0].at);
         });
         assert_eq!(there_already, None);
+    }
+
+    #[test]
+    fn a_push_may_lead_to_a_surface_that_lies_flush() {
+        let onto_leaf = |gap_m: f64| {
+            let edit = move |p: &mut ProblemFile| {
+                let table = p.geometry().unwrap().scene.surface("central table").unwrap().clone();
+                let ((low, high), z) = (table.bounds(), table.height());
+                let polygon = vec![
+                    [high.x + gap_m, low.y],
+                    [high.x + 1.0, low.y],
+                    [high.x + 1.0, high.y],
+                    [high.x + gap_m, high.y],
+                ];
+                let mut leaf = p.surfaces[0].clone();
+                (leaf.name, leaf.top_of, leaf.polygon, leaf.z) = ("leaf".to_owned(), None, Some(polygon), Some(z));
+                p.surfaces.push(leaf);
+                p.goal.objects[0].on = Some("leaf".to_owned());
+                p.goal.objects[0].at = Some([high.x + 0.3, 0.0]);
+                p.objects[0].grasps.clear();
+            };
+            said(edit)
+        };
+        assert_eq!(onto_leaf(0.001), None);
+        assert!(onto_leaf(0.1).unwrap().contains("it has no `grasps`"));
     }
 
     #[test]

@@ -12,11 +12,13 @@
 //! | which solids may not touch, do they? | `stage`, `solid` |
 //! | when must a pair be looked at again? | `approach` |
 //! | is an object gripped, or pushed as pushes go? | `hand` |
+//! | over which of the surfaces that lie flush is an object? | `flush` |
 //! | does the plan start and end where it must? | `start`, `goal` |
 //!
 //! `docs/plan-format.md` states the rules for readers of plans.
 
 mod approach;
+mod flush;
 mod goal;
 mod hand;
 mod judge;

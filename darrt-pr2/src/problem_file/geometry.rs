@@ -79,6 +79,20 @@ impl ProblemFile {
         self.build_geometry().map_err(|flaw| self.located(flaw))
     }
 
+    /// The names of the surfaces to which `object` could be pushed from where it starts without meeting an edge, that one
+    /// included: those on which it may stand and that lie flush, directly or by way of others. Empty if that cannot be said.
+    pub fn surfaces_across(&self, object: &Object) -> Vec<String> {
+        let Ok(layout) = Layout::new(self) else { return Vec::new() };
+        let allowed = self.allowed_surfaces(object);
+        let surfaces = layout.surfaces.iter().map(|surface| &surface.support);
+        let surfaces: Vec<_> = surfaces.filter(|surface| allowed.contains(&surface.name())).collect();
+        let names = |group: Vec<usize>| -> Vec<String> {
+            group.into_iter().filter_map(|i| Some(surfaces.get(i)?.name().to_owned())).collect()
+        };
+        let groups = SupportSurface::flush_groups(&surfaces).into_iter().map(names);
+        groups.into_iter().find(|group| group.contains(&object.on)).unwrap_or_default()
+    }
+
     /// Names a flaw that was found in this problem after reading.
     pub(super) fn located(&self, (key, flaw): Located) -> ProblemFileError {
         ProblemFileError::Invalid { file: format!("problem `{}`", self.name), key, flaw: Box::new(flaw) }

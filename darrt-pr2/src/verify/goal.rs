@@ -76,8 +76,10 @@ fn place_flaw(
     let plane =
         movable.surfaces.iter().find_map(|&i| Some((i, world.surface(i)?)).filter(|(_, s)| s.name() == surface));
     let Some((index, plane)) = plane else { return Some(format!("may not stand on `{surface}`")) };
+    // Within a tolerance of the seam to a flush surface it may stand on that.
+    let object = world.object(&movable.spec.name).unwrap_or(usize::MAX);
     if let Mode::Resting { surface: on } = mode
-        && *on != index
+        && (!world.across(object, *on).contains(&index) || plane.depth(&at.xy().into()) < -goal.tolerance_m)
     {
         return Some(format!("does not stand on `{surface}`"));
     }

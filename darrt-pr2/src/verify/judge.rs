@@ -138,8 +138,8 @@ impl<'a> Judge<'a> {
         let (world, modes) = (&self.world, &self.modes);
         self.stage.set_movers(|_| Movers::NONE, |_| Movers::NONE);
         self.stage.set_rules(|pair| match (pair, pair_object(pair).and_then(|o| modes.get(o))) {
-            (PairKind::ObjectFixed { fixed, .. }, Some(Mode::Resting { surface }))
-                if world.carries(*surface, fixed) =>
+            (PairKind::ObjectFixed { object, fixed }, Some(Mode::Resting { surface }))
+                if world.carries(object, *surface, fixed) =>
             {
                 Rule::Standing
             }
@@ -286,6 +286,12 @@ impl<'a> Judge<'a> {
 
     /// What the step leaves behind.
     fn finish(&mut self, trial: &Trial<'a>, end: &State) -> Result<(), Refusal> {
+        if let Some(object) = trial.act.pushed
+            && let (Some(Mode::Resting { surface }), Some(pose)) = (self.modes.get_mut(object), end.objects.get(object))
+            && let Some(now) = self.world.under(object, *surface, &pose.translation.vector.xy().into())
+        {
+            *surface = now;
+        }
         let Some(holding) = trial.act.holding else { return Ok(()) };
         let mode = match (trial.site.primitive, &trial.step.holds) {
             (PrimitiveName::Place, _) => {

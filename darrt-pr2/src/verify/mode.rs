@@ -177,7 +177,8 @@ impl Permits {
             (P::Place, _) => world.movables.get(object).map(|m| m.surfaces.clone()).unwrap_or_default(),
             _ => return false,
         };
-        let is_fit = holding.object == object && surfaces.into_iter().any(|surface| world.carries(surface, fixed));
+        let is_fit =
+            holding.object == object && surfaces.into_iter().any(|surface| world.carries(object, surface, fixed));
         if is_fit {
             self.support.push((object, fixed));
         }
@@ -191,7 +192,7 @@ impl Permits {
             PairKind::ObjectFixed { object, fixed } => {
                 let is_held = act.holding.is_some_and(|holding| holding.object == object);
                 let stands = match modes.get(object) {
-                    Some(Mode::Resting { surface }) if !is_held => world.carries(*surface, fixed),
+                    Some(Mode::Resting { surface }) if !is_held => world.carries(object, *surface, fixed),
                     _ => self.support.contains(&(object, fixed)),
                 };
                 if stands { Rule::Standing } else { Rule::Apart }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use darrt_geom::{Scene, SupportSurface};
 use nalgebra::{Isometry3, Point2, Vector3};
 
+use super::flush::Flush;
 use super::refusal::{Refusal, RefusalKind};
 use super::solid::Solid;
 use crate::problem_file::{Object, ProblemFile};
@@ -32,6 +33,9 @@ pub(super) struct World<'a> {
     scene: Scene,
     /// By surface: the fixed body under it, where known.
     carriers: Vec<Option<usize>>,
+    flush: Flush,
+    /// By object and surface, see [`World::across`].
+    groups: Vec<Vec<Vec<usize>>>,
 }
 
 impl<'a> World<'a> {
@@ -65,7 +69,14 @@ impl<'a> World<'a> {
             let name = &geometry.scene.bodies().get((*carrier)?)?.body.name;
             fixed.iter().position(|(solid, _)| solid.name() == &**name)
         });
-        Ok(Self { carriers: carriers.collect(), fixed, movables, scene: geometry.scene })
+        let carriers = carriers.collect();
+        let scene = geometry.scene;
+        let flush = Flush::new(scene.surfaces());
+        let of_object = |movable: &Movable<'_>| {
+            (0..scene.surfaces().len()).map(|surface| flush.group(surface, &movable.surfaces)).collect()
+        };
+        let groups = movables.iter().map(of_object).collect();
+        Ok(Self { carriers, fixed, movables, scene, flush, groups })
     }
 
     /// Index of the movable object called `name`.
@@ -82,9 +93,21 @@ impl<'a> World<'a> {
         self.scene.surfaces().get(index)
     }
 
-    /// Whether what stands on the surface touches the fixed body: the one under it, or any where that is not known.
-    pub(super) fn carries(&self, surface: usize, fixed: usize) -> bool {
-        self.carriers.get(surface).copied().flatten().is_none_or(|carrier| carrier == fixed)
+    /// Whether an object that stands on the surface, or across a seam from it, touches the fixed body: the one under it, or any
+    /// where that is not known.
+    pub(super) fn carries(&self, object: usize, surface: usize, fixed: usize) -> bool {
+        let is_on = |surface| self.carriers.get(surface).copied().flatten().is_none_or(|carrier| carrier == fixed);
+        self.across(object, surface).iter().copied().any(is_on)
+    }
+
+    /// The surfaces to which the object can be pushed from a surface without meeting an edge; that one first.
+    pub(super) fn across(&self, object: usize, surface: usize) -> &[usize] {
+        self.groups.get(object).and_then(|groups| groups.get(surface)).map_or(&[], |group| group)
+    }
+
+    /// Of the surface on which an object stands and those flush with it the one that its centre is over.
+    pub(super) fn under(&self, object: usize, surface: usize, centre: &Point2<f64>) -> Option<usize> {
+        self.flush.under(self.scene.surfaces(), self.across(object, surface), centre)
     }
 
     /// The allowed surface on which the object stands at `pose`, or what is wrong with each.
@@ -104,11 +127,15 @@ impl<'a> World<'a> {
         let bottom = pose.translation.z - movable.depth_below_origin;
         let centre = Point2::from(pose.translation.vector.xy());
         let mut flaws = Vec::new();
+        let mut level = Vec::new();
         for &index in &movable.surfaces {
             let Some(surface) = self.surface(index) else { continue };
             let (above, inside) = (bottom - surface.height(), surface.depth(&centre));
             if above.abs() <= slack_m && inside >= 0.0 {
                 return Ok(index);
+            }
+            if above.abs() <= slack_m {
+                level.push(index);
             }
             let name = surface.name();
             flaws.push(if inside < 0.0 {
@@ -117,6 +144,8 @@ impl<'a> World<'a> {
                 format!("its bottom is {above:.4} m above `{name}`, at most {slack_m} is on it")
             });
         }
-        Err(format!("stands on no surface: {}", flaws.join("; ")))
+        // In the seam between two it is beside both.
+        let in_seam = self.flush.under(self.scene.surfaces(), &level, &centre);
+        in_seam.ok_or_else(|| format!("stands on no surface: {}", flaws.join("; ")))
     }
 }

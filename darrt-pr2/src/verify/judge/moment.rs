@@ -110,16 +110,18 @@ impl<'a> Judge<'a> {
         self.stage.idle_parts().min(inside).clamp(0.0, parts as f64) as usize
     }
 
-    /// A pushed object does not leave its surface.
+    /// A pushed object does not leave its surface and those flush with it.
     pub(super) fn check_on_surface(&self, site: Site, time: f64, object: usize, now: &State) -> Result<(), Refusal> {
         let (Some(Mode::Resting { surface }), Some(pose)) = (self.modes.get(object), now.objects.get(object)) else {
             return Ok(());
         };
-        let Some(surface) = self.world.surface(*surface) else { return Ok(()) };
-        let inside = surface.depth(&Point2::from(pose.translation.vector.xy()));
-        if inside >= 0.0 {
+        let centre = Point2::from(pose.translation.vector.xy());
+        if self.world.under(object, *surface, &centre).is_some() {
             return Ok(());
         }
+        let depths = self.world.across(object, *surface).iter().filter_map(|index| self.world.surface(*index));
+        let nearest = depths.map(|surface| (surface.depth(&centre), surface)).max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((inside, surface)) = nearest else { return Ok(()) };
         let (name, plane) = (self.world.object_name(object), surface.name());
         let text = format!("the centre of {name} is {:.4} m beside `{plane}`", -inside);
         Err(site.refusal(time, RefusalKind::Support, text).about(name, plane).at(&pose.translation.vector.into()))
