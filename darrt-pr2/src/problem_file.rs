@@ -28,7 +28,7 @@ pub mod upper_face;
 pub mod validate;
 pub mod world;
 
-pub use builtin::{builtin, builtin_names, builtin_text, further_names};
+pub use builtin::{builtin, builtin_names, builtin_text, everyday_names, further_names};
 pub use error::ProblemFileError;
 pub use goal::{Goal, GoalState, GoalTarget, ObjectGoal, Region};
 pub use grasps::{GraspFamily, OverheadGrasp, RimGrasp, SideGrasp};

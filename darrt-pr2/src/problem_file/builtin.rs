@@ -23,6 +23,28 @@ const FURTHER: [(&str, &str); 5] = [
     ("bowl-in-the-way", include_str!("../../scenes/bowl-in-the-way.toml")),
 ];
 
+/// Small problems of a household, each with one thing that a planner may get wrong.
+const EVERYDAY: [(&str, &str); 13] = [
+    ("mug-beside", include_str!("../../scenes/everyday/mug-beside.toml")),
+    ("bottle-behind-cups", include_str!("../../scenes/everyday/bottle-behind-cups.toml")),
+    ("three-mugs", include_str!("../../scenes/everyday/three-mugs.toml")),
+    ("mug-to-shelf", include_str!("../../scenes/everyday/mug-to-shelf.toml")),
+    ("box-beside-others", include_str!("../../scenes/everyday/box-beside-others.toml")),
+    ("plate-over-seam", include_str!("../../scenes/everyday/plate-over-seam.toml")),
+    ("l-shaped-table", include_str!("../../scenes/everyday/l-shaped-table.toml")),
+    ("plate-under-shelf", include_str!("../../scenes/everyday/plate-under-shelf.toml")),
+    ("door-74-cm", include_str!("../../scenes/everyday/door-74-cm.toml")),
+    ("door-70-cm", include_str!("../../scenes/everyday/door-70-cm.toml")),
+    ("bowl-upright", include_str!("../../scenes/everyday/bowl-upright.toml")),
+    ("goal-near-edge", include_str!("../../scenes/everyday/goal-near-edge.toml")),
+    ("low-plank", include_str!("../../scenes/everyday/low-plank.toml")),
+];
+
+/// The names of the embedded everyday problems.
+pub fn everyday_names() -> [&'static str; 13] {
+    EVERYDAY.map(|(name, _)| name)
+}
+
 /// The names of the embedded problems that are not the paper's, from easy to hard.
 pub fn further_names() -> [&'static str; 5] {
     FURTHER.map(|(name, _)| name)
@@ -65,12 +87,12 @@ pub(super) fn unknown(name: &str) -> ProblemFileError {
 }
 
 fn all_names() -> impl Iterator<Item = &'static str> {
-    builtin_names().into_iter().chain(further_names())
+    builtin_names().into_iter().chain(further_names()).chain(everyday_names())
 }
 
 fn find(name: &str) -> Option<(&'static str, &'static str)> {
     let wanted = folded(name);
-    PROBLEMS.into_iter().chain(FURTHER).find(|(candidate, _)| folded(candidate) == wanted)
+    PROBLEMS.into_iter().chain(FURTHER).chain(EVERYDAY).find(|(candidate, _)| folded(candidate) == wanted)
 }
 
 /// Letters and digits only, in lower case: what the spellings of one name have in common.

@@ -409,7 +409,6 @@ impl Stage {
     }
 }
 
-/// Where a solid of the robot sits: its link, its pose there, and the centre of its ball there.
 /// How far a wheel may press into the floor that it stands on, metres: what rounding may do.
 const FLOOR_SLACK_M: f64 = 1e-9;
 
@@ -420,6 +419,7 @@ fn lies_below(solid: &Solid, pose: &Isometry3<f64>, height_m: f64) -> bool {
     normal == Vector3::z() && pose.translation.z <= height_m + FLOOR_SLACK_M
 }
 
+/// Where a solid of the robot sits: its link, its pose there, and the centre of its ball there.
 fn mount(solid: &LinkSolid) -> (usize, Isometry3<f64>, Point3<f64>) {
     (solid.link, solid.link_from_solid, solid.solid.world_centre(&solid.link_from_solid))
 }

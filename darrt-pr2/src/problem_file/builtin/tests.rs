@@ -277,6 +277,18 @@ fn further_problems_are_valid_and_bear_their_names() {
 }
 
 #[test]
+fn everyday_problems_are_valid_and_say_what_they_are_about() {
+    for name in everyday_names() {
+        let problem = problem(name);
+        assert_eq!(problem.name, name);
+        assert!(problem.title.contains(": ") && problem.description.len() > 80, "{name}");
+        let (masses, frictions) = (problem.objects.iter().map(|o| o.mass_kg), problem.objects.iter().map(|o| &o.friction));
+        assert!(masses.into_iter().all(|kg| (0.05..=5.0).contains(&kg)), "{name}");
+        assert!(frictions.into_iter().all(|f| (0.05..=1.0).contains(&f.table) && (0.01..=1.0).contains(&f.fingers)), "{name}");
+    }
+}
+
+#[test]
 fn larger_problems_have_more_objects_and_room_for_each() {
     for (name, objects, goals) in [("plate-and-bowl", 2, 2), ("plate-and-two-bowls", 3, 3), ("bowl-in-the-way", 2, 1)] {
         let problem = problem(name);

@@ -1,0 +1,34 @@
+//! Every everyday problem is planned once, and the plan is what a person would expect of it.
+
+use darrt_core::budget::Cancel;
+use darrt_core::observe::Silent;
+use darrt_pr2::plan_file::{PlanFile, Step, Waypoint};
+use darrt_pr2::planning::{PlanRequest, plan};
+use darrt_pr2::problem_file::{PrimitiveName, builtin, everyday_names};
+
+/// The verified plan of a problem, within a number of iterations that no seed tried has needed.
+fn planned(name: &str) -> PlanFile {
+    let mut request = PlanRequest::new(builtin(name).unwrap(), 0);
+    request.iterations = Some(20_000);
+    let result = plan(&request, &Cancel::new(), &mut Silent).unwrap_or_else(|error| panic!("{name}: {error}"));
+    result.plan.unwrap_or_else(|| panic!("{name}: no plan, {:?} after {} iterations", result.stop, result.iterations))
+}
+
+#[test]
+fn every_problem_is_solved() {
+    for name in everyday_names() {
+        let plan = planned(name);
+        assert!(!plan.steps.is_empty(), "{name}");
+    }
+}
+
+#[test]
+fn the_plate_is_pushed_over_the_seam() {
+    let plan = planned("plate-over-seam");
+    let x_y = |waypoint: &Waypoint| waypoint.objects.get("plate").map(|pose| pose.position);
+    let crosses = |step: &Step| {
+        let ends = [step.waypoints.first(), step.waypoints.last()].map(|w| w.and_then(x_y).map(|[_, y, _]| y));
+        step.primitive == PrimitiveName::Push && matches!(ends, [Some(from), Some(to)] if from > 0.0 && to < 0.0)
+    };
+    assert!(plan.steps.iter().any(crosses), "no push goes over the seam");
+}
