@@ -3,7 +3,7 @@
 use crate::check;
 use crate::error::GeomError;
 use crate::shape::Shape;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Point3, Vector3};
 use std::sync::Arc;
 
 /// Most parts a body may have.
@@ -22,6 +22,19 @@ impl Part {
     /// A solid whose frame is the body's.
     pub fn centred(shape: Shape) -> Self {
         Self { shape, body_from_shape: Isometry3::identity() }
+    }
+
+    /// The axis-aligned box in the body's frame around the box of the solid in its own.
+    fn aabb(&self) -> (Point3<f64>, Point3<f64>) {
+        let (low, high) = self.shape.local_aabb();
+        if self.body_from_shape == Isometry3::identity() || !self.shape.is_bounded() {
+            return (low, high);
+        }
+        let half = (high - low) / 2.0;
+        let turn = self.body_from_shape.rotation.to_rotation_matrix();
+        let reach = turn.matrix().abs() * half;
+        let middle = self.body_from_shape * nalgebra::center(&low, &high);
+        (middle - reach, middle + reach)
     }
 }
 
@@ -58,6 +71,15 @@ impl Body {
         self.parts.iter().all(|part| part.shape.is_bounded())
     }
 
+    /// Corners `(minimum, maximum)` of an axis-aligned box around the body in its own frame: around the boxes of its parts.
+    pub fn local_aabb(&self) -> (Point3<f64>, Point3<f64>) {
+        let empty = (Point3::from(Vector3::repeat(f64::INFINITY)), Point3::from(Vector3::repeat(f64::NEG_INFINITY)));
+        self.parts.iter().fold(empty, |(low, high), part| {
+            let (least, most) = part.aabb();
+            (low.inf(&least), high.sup(&most))
+        })
+    }
+
     /// Whether the body is fit for use; the constructors call it, and whoever takes a body calls it again because the
     /// fields are public.
     ///
@@ -79,6 +101,24 @@ impl Body {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_box_around_a_body_holds_all_its_parts() {
+        let turned = Isometry3::rotation(Vector3::z() * std::f64::consts::FRAC_PI_2);
+        let parts = vec![
+            Part::centred(Shape::cuboid(Vector3::new(0.1, 0.2, 0.3)).unwrap()),
+            Part {
+                shape: Shape::cylinder(0.1, 0.5).unwrap(),
+                body_from_shape: Isometry3::translation(0.0, 0.0, -0.4) * turned,
+            },
+        ];
+        let (low, high) = Body::new("pair", parts).unwrap().local_aabb();
+        assert!(
+            (low - Point3::new(-0.1, -0.2, -0.9)).norm() < 1e-12 && (high - Point3::new(0.1, 0.2, 0.3)).norm() < 1e-12
+        );
+        let floor = Body::single("floor", Shape::half_space(Vector3::z_axis()).unwrap()).unwrap();
+        assert_eq!(floor.local_aabb().1.x, f64::INFINITY);
+    }
 
     #[test]
     fn bodies_are_checked() {

@@ -4,8 +4,10 @@
 //! Only what is certain counts: an object rests until it is picked, a push leaves it on its surface or on one that lies flush
 //! with it, and only Place lets go of it.
 
+use crate::grasp_families::why_none_holds;
 use crate::planning_error::PlanningError;
 use crate::problem_file::{GoalState, GoalTarget, Object, ObjectGoal, PrimitiveName, ProblemFile};
+use crate::robot::{Gripper, PAYLOAD_KG};
 
 /// Checks that for every object some goal may hold at the start, or that it can be moved as that goal needs.
 ///
@@ -32,18 +34,23 @@ pub fn check_means(problem: &ProblemFile) -> Result<(), PlanningError> {
 /// What can be done with one object, each with the reason why not.
 struct Means<'a> {
     object: &'a Object,
-    pick: Result<(), &'static str>,
-    place: Result<(), &'static str>,
-    push: Result<(), &'static str>,
+    pick: Result<(), String>,
+    place: Result<(), String>,
+    push: Result<(), String>,
 }
 
 impl<'a> Means<'a> {
     fn new(problem: &ProblemFile, object: &'a Object) -> Self {
-        let allowed = |name, lack| if problem.allows(name) { Ok(()) } else { Err(lack) };
-        let fit = |is_fit: bool, lack| if is_fit { Ok(()) } else { Err(lack) };
+        let fit = |is_fit: bool, lack: &str| if is_fit { Ok(()) } else { Err(lack.to_owned()) };
+        let allowed = |name, lack| fit(problem.allows(name), lack);
+        let holds = |()| match why_none_holds(object, &Gripper, PAYLOAD_KG) {
+            Some(why) => Err(format!("no grasp holds it: {why}")),
+            None => Ok(()),
+        };
         let pick = allowed(PrimitiveName::Pick, "`Pick` is not among the primitives")
-            .and(fit(!object.grasps.is_empty(), "it has no `grasps` for Pick"));
-        let place = pick.and(allowed(PrimitiveName::Place, "`Place` is not among the primitives"));
+            .and(fit(!object.grasps.is_empty(), "it has no `grasps` for Pick"))
+            .and_then(holds);
+        let place = pick.clone().and(allowed(PrimitiveName::Place, "`Place` is not among the primitives"));
         let push = allowed(PrimitiveName::Push, "`Push` is not among the primitives")
             .and(fit(object.pushable(), "it is not `pushable`"));
         Self { object, pick, place, push }
@@ -54,10 +61,10 @@ impl<'a> Means<'a> {
         let index = problem.goal.objects.iter().position(|other| std::ptr::eq(other, goal)).unwrap_or(0);
         let key = format!("`goal.object[{index}]`");
         if goal.state() == GoalState::Held {
-            return self.pick.err().map(|lack| format!("{key} wants it in the hand, but {lack}"));
+            return self.pick.as_ref().err().map(|lack| format!("{key} wants it in the hand, but {lack}"));
         }
-        let by_hand = if goal.state() == GoalState::Released { self.place } else { self.pick };
-        let lack = by_hand.err()?;
+        let by_hand = if goal.state() == GoalState::Released { &self.place } else { &self.pick };
+        let lack = by_hand.as_ref().err()?;
         if self.may_hold_at_start(goal) {
             return None;
         }
@@ -65,7 +72,7 @@ impl<'a> Means<'a> {
         let is_across = |on: &str| problem.surfaces_across(self.object).iter().any(|name| name == on);
         match goal.on.as_deref().filter(|on| on != start && !is_across(on)) {
             Some(on) => Some(format!("{key} wants it on `{on}`, it starts on `{start}`, and {lack}")),
-            None => self.push.err().map(|push| format!("{key} wants it to move, but {lack}, and {push}")),
+            None => self.push.as_ref().err().map(|push| format!("{key} wants it to move, but {lack}, and {push}")),
         }
     }
 
@@ -87,7 +94,7 @@ impl<'a> Means<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem_file::{builtin, builtin_names};
+    use crate::problem_file::{GraspFamily, builtin, builtin_names};
 
     /// What is said about an edited Plate1, whose plate goes from the central table to the side table.
     fn said(edit: impl Fn(&mut ProblemFile)) -> Option<String> {
@@ -122,6 +129,37 @@ mod tests {
             p.goal.objects[0].state = Some(GoalState::Any);
         };
         assert_eq!(said(any), None);
+    }
+
+    #[test]
+    fn what_no_grasp_holds_is_not_carried() {
+        let lack = |edit: fn(&mut Object)| said(|p| edit(&mut p.objects[0])).unwrap();
+        let heavy = lack(|plate| plate.mass_kg = 50.0);
+        assert!(heavy.ends_with("and no grasp holds it: it weighs 50 kg, the arm carries 1.8"), "{heavy}");
+        let long = lack(|plate| plate.mass_kg = 0.6);
+        let tips = "against tipping out of the pads it needs 57.9 N of grip, the gripper has 50";
+        assert!(long.ends_with(tips), "{long}");
+        let smooth = lack(|plate| plate.friction.fingers = 0.0);
+        assert!(smooth.ends_with("no grasp holds it: the fingers have no friction with it"), "{smooth}");
+        // By the side it holds, by the rim it does not: one is enough.
+        let tin = |plate: &mut Object| {
+            plate.shape = crate::problem_file::ShapeSpec::Cylinder { radius: 0.04, height: 0.05 };
+            plate.rim.insertion_m = 0.002;
+            plate.grasps = vec![GraspFamily::Rim];
+        };
+        assert!(lack(tin).contains("N of grip"));
+        let by_the_side = said(|p| {
+            tin(&mut p.objects[0]);
+            p.objects[0].grasps.push(GraspFamily::Side);
+        });
+        assert_eq!(by_the_side, None);
+        // What is only pushed may weigh what it wants.
+        let pushed = said(|p| {
+            p.objects[0].mass_kg = 50.0;
+            p.goal.objects[0].on = Some("central table".to_owned());
+            p.goal.objects[0].at = Some([-0.2, -0.2]);
+        });
+        assert_eq!(pushed, None);
     }
 
     #[test]

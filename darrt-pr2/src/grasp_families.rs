@@ -2,13 +2,14 @@
 
 use darrt_primitives::error::PrimitiveError;
 use darrt_primitives::grasp::footprint::Footprint;
+use darrt_primitives::grasp::hold::{Hold, Load, NoHold, hold};
 use darrt_primitives::grasp::overhead::{OverheadGrasps, WallGrasps, WallOptions};
 use darrt_primitives::grasp::rim::{Rim, RimGrasps, RimOptions};
 use darrt_primitives::grasp::side::SideGrasps;
-use darrt_primitives::grasp::{GraspFamily as Family, Grip};
+use darrt_primitives::grasp::{Grasp, GraspFamily as Family, Grip};
 use darrt_primitives::manipulator::Hand;
 
-use crate::problem_file::{GraspFamily, Object, RimGrasp, ShapeSpec};
+use crate::problem_file::{GraspFamily, Object, PlateRim, RimGrasp, ShapeSpec};
 
 /// A family of grasps that does not fit its object.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -28,14 +29,50 @@ pub fn families(object: &Object, hand: &dyn Hand) -> Result<Vec<Box<dyn Family>>
     object.grasps.iter().map(|family| one(*family, object, hand).map_err(|error| flaw(*family, error))).collect()
 }
 
-/// Names the key of the problem file that an error of a family is about.
-fn flaw(family: GraspFamily, error: PrimitiveError) -> GraspFlaw {
-    use PrimitiveError as E;
-    let family = match family {
+/// Why no grasp of the object holds it, family by family; `None` if one does, or if it has none that can be judged.
+pub fn why_none_holds(object: &Object, hand: &dyn Hand, payload_kg: f64) -> Option<String> {
+    let load = Load {
+        mass_kg: object.mass_kg,
+        friction: object.friction.fingers,
+        grip_force_n: hand.grip_force_n(),
+        payload_kg,
+    };
+    let mut reasons: Vec<(&str, String)> = Vec::new();
+    for family in &object.grasps {
+        let grasps = one(*family, object, hand).ok()?;
+        let judged = |grasp: &Grasp| Some(hold(&grasp.object_from_tool.inverse(), &grasps.pads(grasp)?, &load));
+        let reason = grasps.grid().iter().map(judged).reduce(easier)??.err()?;
+        reasons.push((name_of(*family), reason.to_string()));
+    }
+    let (_, first) = reasons.first()?;
+    if reasons.iter().all(|(_, reason)| reason == first) {
+        return Some(first.clone());
+    }
+    Some(reasons.iter().map(|(family, reason)| format!("`{family}`: {reason}")).collect::<Vec<_>>().join("; "))
+}
+
+/// Of what is said about two grasps, that about the one that holds, or is nearer to holding.
+fn easier(a: Option<Result<Hold, NoHold>>, b: Option<Result<Hold, NoHold>>) -> Option<Result<Hold, NoHold>> {
+    let needs = |found: &NoHold| if let NoHold::Weak { needs_n, .. } = found { *needs_n } else { f64::INFINITY };
+    match (a?, b?) {
+        (Err(a), Err(b)) if needs(&b) < needs(&a) => Some(Err(b)),
+        (Err(_), Ok(b)) => Some(Ok(b)),
+        (a, _) => Some(a),
+    }
+}
+
+fn name_of(family: GraspFamily) -> &'static str {
+    match family {
         GraspFamily::Rim => "rim",
         GraspFamily::Overhead => "overhead",
         GraspFamily::Side => "side",
-    };
+    }
+}
+
+/// Names the key of the problem file that an error of a family is about.
+fn flaw(family: GraspFamily, error: PrimitiveError) -> GraspFlaw {
+    use PrimitiveError as E;
+    let family = name_of(family);
     let name = match &error {
         E::NotFinite { name, .. }
         | E::NotPositive { name, .. }
@@ -93,7 +130,7 @@ fn one(family: GraspFamily, object: &Object, hand: &dyn Hand) -> Result<Box<dyn 
     };
     let missing = |kind: &str| {
         let fit = match family {
-            GraspFamily::Rim => "rim grasps take a cylinder or a bowl",
+            GraspFamily::Rim => "rim grasps take a plate, a cylinder or a bowl",
             GraspFamily::Overhead => "overhead grasps take a box, a cylinder, a capsule or a bowl",
             GraspFamily::Side => "side grasps take a box, a cylinder or a capsule",
         };
@@ -103,6 +140,13 @@ fn one(family: GraspFamily, object: &Object, hand: &dyn Hand) -> Result<Box<dyn 
         (GraspFamily::Rim, shape) => {
             let (rim, thickness) = rim_of(shape)?.ok_or_else(|| missing(shape.kind()))?;
             let RimGrasp { insertion_m, azimuths, opening_m, approach_m, .. } = object.rim;
+            if let ShapeSpec::Plate { rim: PlateRim { width_m: high, .. }, .. } = *shape
+                && insertion_m > high
+            {
+                // Farther in there is the bottom.
+                let name = "fingertip insertion";
+                return Err(PrimitiveError::OutOfRange { name, value: insertion_m, low: 0.0, high });
+            }
             let tilts = radians(&object.rim_tilts_deg());
             let options = RimOptions { insertion: insertion_m, tilts, grid_azimuths: azimuths };
             Box::new(RimGrasps::new(rim, grip(opening_m, thickness, approach_m), options)?)
@@ -141,6 +185,10 @@ fn rim_of(shape: &ShapeSpec) -> Result<Option<(Rim, f64)>, PrimitiveError> {
     Ok(match *shape {
         ShapeSpec::Cylinder { radius, height } => Some((Rim::level(radius, height, radius)?, height)),
         ShapeSpec::Bowl { radius, height, wall } => Some((Rim::level(radius, height, wall)?, height)),
+        ShapeSpec::Plate { radius, height, rim: PlateRim { slope_deg, width_m, thickness_m } } => {
+            let slope = slope_deg.to_radians();
+            Some((Rim::sloping(radius, height / 2.0, slope, width_m, thickness_m)?, thickness_m))
+        }
         _ => None,
     })
 }

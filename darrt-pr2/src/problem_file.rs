@@ -37,7 +37,7 @@ pub use primitive_name::PrimitiveName;
 pub use robot::{ArmSide, Limits, Robot, RobotModel};
 pub use safety::Safety;
 pub use settings::{Budget, DistanceName, EdgeRule, PaperFigures, Place, Push, SamplerName, Sampling, Transit};
-pub use shape::ShapeSpec;
+pub use shape::{PlateRim, ShapeSpec};
 pub use world::{Bounds, Obstacle, Surface};
 
 use schemars::JsonSchema;

@@ -26,7 +26,7 @@ const DRAWN_REACH: f64 = 0.78;
 /// Shoulder pan for which a base is drawn, radians for the right arm: the arm works in front of its own side.
 const DRAWN_PAN: [f64; 2] = [-1.4, 0.45];
 /// The heaviest object that an arm carries, kilograms (Willow Garage, PR2 hardware specifications).
-const PAYLOAD_KG: f64 = 1.8;
+pub const PAYLOAD_KG: f64 = 1.8;
 /// Speeds of the arm's joints, radians per second: the caps with which `MoveIt` plans for the PR2, which are below those of its
 /// description.
 const JOINT_SPEED_RAD_PER_S: [f64; 7] = [1.0, 1.0, 1.5, 1.5, 1.5, 1.5, 1.12];

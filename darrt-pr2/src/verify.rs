@@ -13,6 +13,7 @@
 //! | when must a pair be looked at again? | `approach` |
 //! | is an object gripped, or pushed as pushes go? | `hand` |
 //! | over which of the surfaces that lie flush is an object? | `flush` |
+//! | does the grip bear the weight, also as the object leans? | `hold`, `surface` |
 //! | does the plan start and end where it must? | `start`, `goal` |
 //!
 //! `docs/plan-format.md` states the rules for readers of plans.
@@ -21,6 +22,7 @@ mod approach;
 mod flush;
 mod goal;
 mod hand;
+mod hold;
 mod judge;
 mod mode;
 mod motion;
@@ -31,6 +33,7 @@ mod schedule;
 mod solid;
 mod stage;
 mod start;
+mod surface;
 mod world;
 
 pub use options::VerifyOptions;

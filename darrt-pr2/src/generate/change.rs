@@ -191,7 +191,9 @@ fn is_free(obstacle: &Obstacle, others: &[Obstacle]) -> bool {
 fn resize(shape: &mut ShapeSpec, scale: f64) {
     let sizes: Vec<&mut f64> = match shape {
         ShapeSpec::Box { size } => size.iter_mut().collect(),
-        ShapeSpec::Sphere { radius } | ShapeSpec::Cylinder { radius, .. } => vec![radius],
+        ShapeSpec::Sphere { radius } | ShapeSpec::Cylinder { radius, .. } | ShapeSpec::Plate { radius, .. } => {
+            vec![radius]
+        }
         ShapeSpec::Capsule { radius, height } | ShapeSpec::Bowl { radius, height, .. } => vec![radius, height],
         ShapeSpec::Hull { .. } | ShapeSpec::Mesh { .. } => Vec::new(),
     };

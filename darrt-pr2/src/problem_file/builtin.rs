@@ -15,9 +15,10 @@ const PROBLEMS: [(&str, &str); 6] = [
 ];
 
 /// Problems on which other planners have been measured, and larger ones of the paper's kind.
-const FURTHER: [(&str, &str); 5] = [
+const FURTHER: [(&str, &str); 6] = [
     ("two-tables", include_str!("../../scenes/two-tables.toml")),
     ("two-tables-cups", include_str!("../../scenes/two-tables-cups.toml")),
+    ("sloping-rim-plate", include_str!("../../scenes/sloping-rim-plate.toml")),
     ("plate-and-bowl", include_str!("../../scenes/plate-and-bowl.toml")),
     ("plate-and-two-bowls", include_str!("../../scenes/plate-and-two-bowls.toml")),
     ("bowl-in-the-way", include_str!("../../scenes/bowl-in-the-way.toml")),
@@ -46,7 +47,7 @@ pub fn everyday_names() -> [&'static str; 13] {
 }
 
 /// The names of the embedded problems that are not the paper's, from easy to hard.
-pub fn further_names() -> [&'static str; 5] {
+pub fn further_names() -> [&'static str; 6] {
     FURTHER.map(|(name, _)| name)
 }
 

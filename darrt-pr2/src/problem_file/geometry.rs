@@ -1,13 +1,14 @@
 //! From a problem file to solids, poses and support surfaces.
 
-use darrt_geom::{Body, FixedBody, GeomError, Scene, Shape, SupportSurface, TriangleMesh};
+use darrt_geom::{Body, FixedBody, GeomError, Part, Scene, Shape, SupportSurface, TriangleMesh};
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use super::error::{Flaw, Located};
 use super::layout::Layout;
 use super::upper_face;
-use super::{GoalTarget, Object, ObjectGoal, ProblemFile, ProblemFileError, ShapeSpec};
+use super::{GoalTarget, Object, ObjectGoal, PlateRim, ProblemFile, ProblemFileError, ShapeSpec};
 
 /// The name of the floor, a half space below z = 0 that is part of every scene.
 pub const FLOOR: &str = "floor";
@@ -37,12 +38,14 @@ pub struct Geometry {
 }
 
 impl ShapeSpec {
-    /// The solid; a bowl becomes the solid cylinder around it. Reads the file of a mesh.
+    /// The solid called `name`; a bowl becomes the solid cylinder around it, and the rim of a plate is filled above. Reads the
+    /// file of a mesh.
     ///
     /// # Errors
-    /// When a length is out of range, hull points are flat, or the mesh file cannot be used; `name` is the body's.
-    pub fn solid(&self, name: &str) -> Result<Shape, GeomError> {
-        match self {
+    /// When a length is out of range, hull points are flat, or the mesh file cannot be used.
+    pub fn body(&self, name: &str) -> Result<Body, GeomError> {
+        let shape = match self {
+            Self::Plate { radius, height, rim } => return plate(name, *radius, *height, *rim),
             Self::Box { size } => Shape::cuboid(Vector3::from(*size) / 2.0),
             Self::Sphere { radius } => Shape::sphere(*radius),
             Self::Cylinder { radius, height } | Self::Bowl { radius, height, .. } => {
@@ -57,8 +60,32 @@ impl ShapeSpec {
                 let mesh = TriangleMesh::from_file(file, &Vector3::repeat(*scale))?;
                 Ok(Shape::Mesh(Arc::new(mesh)))
             }
-        }
+        };
+        Body::single(name, shape?)
     }
+}
+
+/// Corners of what stands for a circle around the rim of a plate; it is 0.2 % wider.
+const RIM_CORNERS: u32 = 48;
+
+/// The bottom, a cylinder, and the rim, the hull of its two lower edges and its upper one.
+fn plate(name: &str, radius: f64, height: f64, rim: PlateRim) -> Result<Body, GeomError> {
+    let (sin, cos) = rim.slope_deg.to_radians().sin_cos();
+    let (top, rise) = (height / 2.0, rim.width_m * sin);
+    let lower = [radius, top - rim.thickness_m * cos];
+    let inner = [radius - rim.width_m * cos, lower[1] - rise];
+    let upper = [radius - rim.thickness_m * sin, top];
+    let wider = 1.0 / (PI / f64::from(RIM_CORNERS)).cos();
+    let corners = (0..RIM_CORNERS).flat_map(|corner| {
+        let (sin, cos) = (TAU * f64::from(corner) / f64::from(RIM_CORNERS)).sin_cos();
+        [lower, inner, upper].map(|[r, z]| Point3::new(wider * r * cos, wider * r * sin, z))
+    });
+    let rim = Part::centred(Shape::convex_hull(name, &corners.collect::<Vec<_>>())?);
+    let bottom = Part {
+        shape: Shape::cylinder(inner[0], (height - rise) / 2.0)?,
+        body_from_shape: Isometry3::translation(0.0, 0.0, -rise / 2.0),
+    };
+    Body::new(name, vec![bottom, rim])
 }
 
 impl ProblemFile {
@@ -116,7 +143,9 @@ impl ProblemFile {
     fn build_scene(&self, layout: &Layout) -> Result<Scene, Located> {
         let mut bodies = Vec::with_capacity(self.obstacles.len() + 1);
         for (index, (obstacle, pose)) in self.obstacles.iter().zip(&layout.world_from_obstacle).enumerate() {
-            let body = solid_body(&obstacle.name, &obstacle.shape)
+            let body = obstacle
+                .shape
+                .body(&obstacle.name)
                 .map_err(|error| Flaw::from(error).at(format!("obstacle[{index}]")))?;
             bodies.push(FixedBody { body, world_from_body: *pose });
         }
@@ -158,14 +187,9 @@ fn upright([x, y, z]: [f64; 3], yaw: f64) -> Isometry3<f64> {
     Isometry3::from_parts(Vector3::new(x, y, z).into(), turn)
 }
 
-fn solid_body(name: &str, shape: &ShapeSpec) -> Result<Body, GeomError> {
-    Body::single(name, shape.solid(name)?)
-}
-
 fn starting(object: &Object, surfaces: &[SupportSurface]) -> Result<StartingObject, Flaw> {
-    let shape = object.shape.solid(&object.name)?;
-    let depth_below_origin = -shape.local_aabb().0.z;
-    let body = Body::single(object.name.as_str(), shape)?;
+    let body = object.shape.body(&object.name)?;
+    let depth_below_origin = -body.local_aabb().0.z;
     let found = surfaces.iter().enumerate().find(|(_, surface)| surface.name() == object.on);
     let Some((surface, plane)) = found else {
         return Err(Flaw::Inconsistent(format!("starts on `{}`, which does not exist", object.on)));

@@ -38,7 +38,7 @@ impl ProblemFile {
     pub fn check_files(&self) -> Result<(), ProblemFileError> {
         for (list, index, shape) in self.shapes() {
             if matches!(shape, ShapeSpec::Mesh { .. }) {
-                let read = shape.solid("mesh");
+                let read = shape.body("mesh");
                 read.map_err(|error| self.located(Flaw::from(error).at(format!("{list}[{index}]"))))?;
             }
         }

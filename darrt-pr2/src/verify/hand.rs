@@ -75,9 +75,9 @@ impl PushCore {
             return Err(format!("`{name}` may not be pushed"));
         }
         let core = match object.shape {
-            ShapeSpec::Cylinder { radius, height } | ShapeSpec::Bowl { radius, height, .. } => {
-                Shape::cylinder(radius - skin_m, height / 2.0)
-            }
+            ShapeSpec::Cylinder { radius, height }
+            | ShapeSpec::Bowl { radius, height, .. }
+            | ShapeSpec::Plate { radius, height, .. } => Shape::cylinder(radius - skin_m, height / 2.0),
             ShapeSpec::Sphere { radius } => Shape::sphere(radius - skin_m),
             ShapeSpec::Capsule { radius, height } => Shape::capsule(radius - skin_m, height / 2.0 - radius),
             _ => return Err(format!("`{name}` is not round and cannot be pushed")),

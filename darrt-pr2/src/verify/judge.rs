@@ -11,6 +11,7 @@ use nalgebra::{Isometry3, Vector2};
 use super::approach::{Approach, Movers};
 use super::goal;
 use super::hand::{PushCore, check_grip};
+use super::hold::{Hold, check_hold};
 use super::mode::{Act, Mode, Permits};
 use super::motion::{Segment, State};
 use super::options::VerifyOptions;
@@ -36,6 +37,8 @@ pub(super) struct Judge<'a> {
     approach: Approach,
     /// By object.
     modes: Vec<Mode>,
+    /// How the closed hand holds what it holds.
+    hold: Option<Hold>,
     /// Poses of all links in the frame of the robot's root, overwritten whenever the arm moves.
     links: Vec<Isometry3<f64>>,
     world_from_robot: Isometry3<f64>,
@@ -104,6 +107,7 @@ impl<'a> Judge<'a> {
             stage,
             approach,
             modes,
+            hold: None,
             links: Vec::new(),
             world_from_robot: Isometry3::identity(),
             waypoints: 0,
@@ -279,7 +283,12 @@ impl<'a> Judge<'a> {
             && trial.site.primitive == PrimitiveName::Pick
             && let Some(holding) = trial.act.holding
         {
-            check_grip(trial.site, place.time(1.0), &self.robot, &self.stage, holding.object, self.options)?;
+            let (site, time) = (trial.site, place.time(1.0));
+            check_grip(site, time, &self.robot, &self.stage, holding.object, self.options)?;
+            if let Some(movable) = self.world.movables.get(holding.object) {
+                let (object, tool) = ((holding.object, movable.spec), self.world_from_tool());
+                self.hold = Some(check_hold(site, time, &self.robot, &self.stage, object, &tool)?);
+            }
         }
         Ok(())
     }
@@ -302,6 +311,7 @@ impl<'a> Judge<'a> {
                     let place = pose.translation.vector.into();
                     trial.site.refusal(1.0, RefusalKind::Support, format!("{name} is let go, but {flaw}")).at(&place)
                 })?;
+                self.hold = None;
                 Mode::Resting { surface }
             }
             (_, Some(hold)) => Mode::Held { tool_from_object: hold.tool_from_object },

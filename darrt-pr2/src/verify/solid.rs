@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use darrt_geom::oracle::{self, PosedBody};
-use darrt_geom::{Body, GeomError, Shape};
+use darrt_geom::{Body, GeomError, Part, Shape};
 use nalgebra::{Isometry3, Point3, Vector3};
 
 /// A solid in its own frame with simple shapes around it.
 #[derive(Debug, Clone)]
 pub(super) struct Solid {
-    /// One centred part.
+    /// The solid.
     pub(super) body: Body,
     centre: Point3<f64>,
     pub(super) radius: f64,
@@ -34,15 +34,40 @@ pub(super) struct Answer {
 impl Solid {
     /// A solid called `name` in messages.
     pub(super) fn new(name: &Arc<str>, shape: Shape) -> Result<Self, GeomError> {
-        let (low, high) = shape.local_aabb();
-        let (centre, radius) = shape.bounding_sphere();
-        Ok(Self { body: Body::single(Arc::clone(name), shape)?, centre, radius, low, high })
+        Ok(Self::of(Body::single(Arc::clone(name), shape)?))
+    }
+
+    /// The solid of a body, which may have several parts.
+    pub(super) fn of(body: Body) -> Self {
+        let (low, high) = body.local_aabb();
+        let (centre, radius) = match &body.parts[..] {
+            [part] if part.body_from_shape == Isometry3::identity() => part.shape.bounding_sphere(),
+            parts => {
+                let centre = nalgebra::center(&low, &high);
+                let reaches = parts.iter().map(|part| {
+                    let (middle, radius) = part.shape.bounding_sphere();
+                    (part.body_from_shape * middle - centre).norm() + radius
+                });
+                (centre, reaches.fold(0.0, f64::max))
+            }
+        };
+        Self { body, centre, radius, low, high }
+    }
+
+    /// How far the solid reaches along a direction of its own frame.
+    fn extent(&self, direction: &Vector3<f64>) -> f64 {
+        let of_part = |part: &Part| {
+            let local = part.body_from_shape.inverse_transform_vector(direction);
+            direction.dot(&part.body_from_shape.translation.vector) + part.shape.support_extent(&local)
+        };
+        self.body.parts.iter().map(of_part).reduce(f64::max).unwrap_or(f64::INFINITY)
     }
 
     pub(super) fn name(&self) -> &str {
         &self.body.name
     }
 
+    /// Its shape, or that of its first part.
     pub(super) fn shape(&self) -> Option<&Shape> {
         self.body.parts.first().map(|part| &part.shape)
     }
@@ -102,8 +127,7 @@ pub(super) fn lower_bound(a: &Placed<'_>, b: &Placed<'_>) -> f64 {
 pub(super) fn gap_across(a: &Placed<'_>, b: &Placed<'_>, across: &Vector3<f64>) -> f64 {
     let extent = |placed: &Placed<'_>, direction: &Vector3<f64>| {
         let local = placed.world_from_solid.inverse_transform_vector(direction);
-        let own = placed.solid.shape().map_or(f64::INFINITY, |shape| shape.support_extent(&local));
-        direction.dot(&placed.world_from_solid.translation.vector) + own
+        direction.dot(&placed.world_from_solid.translation.vector) + placed.solid.extent(&local)
     };
     -extent(b, &-across) - extent(a, across)
 }

@@ -1,7 +1,5 @@
 //! What stands around: fixed bodies, support surfaces, movable objects, by index.
 
-use std::sync::Arc;
-
 use darrt_geom::{Scene, SupportSurface};
 use nalgebra::{Isometry3, Point2, Vector3};
 
@@ -54,11 +52,9 @@ impl<'a> World<'a> {
         let surface_index = |name: &str| geometry.scene.surfaces().iter().position(|s| s.name() == name);
         let mut movables = Vec::new();
         for (spec, object) in problem.objects.iter().zip(&geometry.objects) {
-            let Some(part) = object.body.parts.first() else { continue };
-            let name: Arc<str> = Arc::from(spec.name.as_str());
             movables.push(Movable {
                 spec,
-                solid: Solid::new(&name, part.shape.clone()).map_err(|e| refuse(&e))?,
+                solid: Solid::of(object.body.clone()),
                 world_from_start: object.world_from_object,
                 start_surface: object.surface,
                 depth_below_origin: object.depth_below_origin,

@@ -15,10 +15,11 @@ use crate::builder::{Builder, PLATE, TABLE};
 const PUSH_BASE: [f64; 3] = [-0.8, 0.0, 0.0];
 const PUSH_CONTACT: ArmConfiguration = [0.240_989, 0.225_073, -1.17, -0.825_254, -2.010_273, -1.699_174, -0.579_167];
 
-/// The level grasp of the worked pick at the right edge of Plate1.
+/// The level grasp of the worked pick at the right edge of Plate1, of a plate 0.01 m farther out: the fingertips are 0.04 m
+/// inside its rim.
 const PICK_BASE: [f64; 3] = [-0.66, -1.43, 2.27];
 const PICK_GRASP: ArmConfiguration = [-1.664_34, 0.100_358, -2.2, -1.432_225, 2.300_36, -0.790_752, -2.153_001];
-const PICK_PLATE: [f64; 2] = [-0.2, -0.53];
+pub(crate) const PICK_PLATE: [f64; 2] = [-0.2, -0.54];
 
 /// Gap of the open hand of the pick, and of the hand that holds the plate.
 pub(crate) const OPEN: f64 = 0.045;
@@ -90,10 +91,15 @@ pub(crate) fn carry() -> PlanFile {
 }
 
 fn build_carry() -> PlanFile {
+    carry_of(PICK_PLATE, |_| ())
+}
+
+/// The same with the plate elsewhere, its arm going to `aside` of where it lifts the plate.
+pub(crate) fn carry_of(plate: [f64; 2], aside: impl Fn(&mut ArmConfiguration)) -> PlanFile {
     let out = Vector3::new(0.0, -0.1, 0.0);
     let lift = Vector3::new(0.0, 0.0, 0.05);
     let away = moved(PICK_BASE, PICK_GRASP, out);
-    let problem = problem("simple-plate", PICK_BASE, away, PICK_PLATE, PICK_PLATE);
+    let problem = problem("simple-plate", PICK_BASE, away, plate, plate);
     let mut b = Builder::new(&problem, away, OPEN);
     b.begin(PrimitiveName::StraightLineArmTransit, Some(PLATE)).line(-out);
     b.begin(PrimitiveName::Pick, Some(PLATE)).attach().touching(ContactReason::Grasp);
@@ -101,9 +107,10 @@ fn build_carry() -> PlanFile {
     let lifted = b.body.arms[0];
     b.begin(PrimitiveName::BaseRigidTransfer, None).touching(ContactReason::Grasp).drive([-0.66, -1.5, 2.3]);
     b.begin(PrimitiveName::ArmRigidTransfer, Some(PLATE)).touching(ContactReason::Grasp);
-    let mut aside = lifted;
-    aside[0] -= 0.1;
-    b.arm_to(aside).arm_to(lifted);
+    let mut there = lifted;
+    there[0] -= 0.1;
+    aside(&mut there);
+    b.arm_to(there).arm_to(lifted);
     b.begin(PrimitiveName::BaseRigidTransfer, None).touching(ContactReason::Grasp).drive(PICK_BASE);
     b.begin(PrimitiveName::Place, Some(PLATE)).touching(ContactReason::Grasp);
     b.lifting_from(TABLE).line(-lift).hand(OPEN).detach();
@@ -163,12 +170,15 @@ pub(crate) fn lift(lift: &Lift) -> PlanFile {
     b.plan(&problem)
 }
 
-/// The worked picks: a plate by its rim with the hand tilted by 30 and by 45 degrees, a bowl by its wall from above.
-pub(crate) const LIFTS: [Lift; 3] = [
+/// Where the plate is in the tilted lifts.
+const TILTED_PLATE: [f64; 2] = [-0.2, -0.53];
+
+/// A plate by its rim with the hand tilted by 30 and by 45 degrees, which does not hold.
+pub(crate) const TILTED: [Lift; 2] = [
     Lift {
         problem: "simple-plate",
         carrier: TABLE,
-        at: PICK_PLATE,
+        at: TILTED_PLATE,
         base: [-0.9, -0.39, 1.08],
         grasp: [-1.291_075, -0.265_656, -3.7, -1.409_072, 1.274_59, -1.699_329, -1.308_411],
         gaps: [0.05, 0.02],
@@ -177,19 +187,21 @@ pub(crate) const LIFTS: [Lift; 3] = [
     Lift {
         problem: "simple-plate",
         carrier: TABLE,
-        at: PICK_PLATE,
+        at: TILTED_PLATE,
         base: [-0.03, -1.54, 2.01],
         grasp: [0.049_088, 0.274_588, 0.2, -0.295_963, 2.558_943, -0.887_428, 2.138_716],
         gaps: [0.075, 0.02],
         straddles: false,
     },
-    Lift {
-        problem: "bowl",
-        carrier: "shelf",
-        at: [-1.2, 2.29],
-        base: [-1.61, 1.5, 2.27],
-        grasp: [-1.291_359, -0.179_906, -2.05, -0.563_681, -1.068_934, -1.479_549, 2.769_651],
-        gaps: [0.05, 0.005],
-        straddles: true,
-    },
 ];
+
+/// The worked pick of a bowl by its wall, from above.
+pub(crate) const OVERHEAD: Lift = Lift {
+    problem: "bowl",
+    carrier: "shelf",
+    at: [-1.2, 2.29],
+    base: [-1.61, 1.5, 2.27],
+    grasp: [-1.291_359, -0.179_906, -2.05, -0.563_681, -1.068_934, -1.479_549, 2.769_651],
+    gaps: [0.05, 0.005],
+    straddles: true,
+};

@@ -4,6 +4,8 @@
 mod collisions;
 #[path = "wrong/ends.rs"]
 mod ends;
+#[path = "wrong/hold.rs"]
+mod hold;
 #[path = "wrong/manipulation.rs"]
 mod manipulation;
 #[path = "wrong/motions.rs"]

@@ -102,6 +102,15 @@ fn lengths_are_positive() {
     refused("cylinder = { radius = 0.04, height = 0.1 }", capsule, &["capsule.height", "0.15", "0.2"]);
     let bowl = "bowl = { radius = 0.1, height = 0.1, wall = 0.1 }";
     refused("cylinder = { radius = 0.04, height = 0.1 }", bowl, &["bowl.wall", "less than the radius, 0.1"]);
+    let plate = |slope: f64, width: f64, height: f64| {
+        format!(
+            "plate = {{ radius = 0.1, height = {height}, rim = {{ slope_deg = {slope}, width_m = {width}, thickness_m = 0.005 }} }}"
+        )
+    };
+    let cylinder = "cylinder = { radius = 0.04, height = 0.1 }";
+    refused(cylinder, &plate(50.0, 0.03, 0.03), &["plate.rim.slope_deg", "is 50"]);
+    refused(cylinder, &plate(15.0, 0.1, 0.03), &["plate.rim.width_m", "less than the radius, 0.1"]);
+    refused(cylinder, &plate(30.0, 0.04, 0.024), &["plate.height", "at least the height of its rim, 0.0243"]);
     let hull = "hull = { points = [[0,0,0],[1,0,0],[0,1,0]] }";
     refused("cylinder = { radius = 0.04, height = 0.1 }", hull, &["hull.points", "has 3 entries", "4 to 10000"]);
     refused("at = [0.0, 0.0]\n[[goal", "at = [0.0, 0.0]\nmass_kg = -1\n[[goal", &["`object[0].mass_kg`", "-1"]);

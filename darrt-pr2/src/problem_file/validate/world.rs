@@ -20,6 +20,12 @@ const MOST_CORNERS: usize = darrt_geom::support::MAXIMUM_VERTICES;
 /// Most points of a hull.
 const MOST_POINTS: usize = 10_000;
 
+/// Steepest rim of a plate, degrees.
+const STEEPEST_RIM_DEG: f64 = 45.0;
+
+/// What rounding may do to a length (m).
+const ROUNDING: f64 = 1e-9;
+
 /// Checks robot, bounds, obstacles and surfaces.
 pub(super) fn check(problem: &ProblemFile) -> Result<(), Located> {
     for (name, range) in problem.bounds.ranges() {
@@ -126,6 +132,12 @@ pub(super) fn check_shape(shape: &ShapeSpec, key: &str) -> Result<(), Located> {
         ShapeSpec::Bowl { radius, height, wall } => {
             vec![("radius".to_owned(), *radius), ("height".to_owned(), *height), ("wall".to_owned(), *wall)]
         }
+        ShapeSpec::Plate { radius, height, rim } => vec![
+            ("radius".to_owned(), *radius),
+            ("height".to_owned(), *height),
+            ("rim.width_m".to_owned(), rim.width_m),
+            ("rim.thickness_m".to_owned(), rim.thickness_m),
+        ],
         ShapeSpec::Hull { .. } => Vec::new(),
         ShapeSpec::Mesh { scale, .. } => vec![("scale".to_owned(), *scale)],
     };
@@ -142,6 +154,13 @@ pub(super) fn check_shape(shape: &ShapeSpec, key: &str) -> Result<(), Located> {
         }
         ShapeSpec::Bowl { radius, wall, .. } => {
             range("wall", *wall, wall >= radius, format!("less than the radius, {radius}"))
+        }
+        ShapeSpec::Plate { radius, height, rim } => {
+            within(&format!("{key}.rim.slope_deg"), rim.slope_deg, 0.0, STEEPEST_RIM_DEG)?;
+            let bound = format!("less than the radius, {radius}");
+            range("rim.width_m", rim.width_m, rim.width_m >= *radius, bound)?;
+            let bound = format!("at least the height of its rim, {:.4}", rim.height());
+            range("height", *height, *height < rim.height() - ROUNDING, bound)
         }
         ShapeSpec::Hull { points } => length(&format!("{key}.points"), points.len(), 4, MOST_POINTS),
         _ => Ok(()),

@@ -1,6 +1,6 @@
 //! One moment of a step: where the objects are, and everything that must hold then.
 
-use nalgebra::{Isometry3, Point2, Vector2};
+use nalgebra::{Isometry3, Point2, Vector2, Vector3};
 
 use super::{Judge, Trial};
 use crate::verify::mode::Mode;
@@ -9,8 +9,13 @@ use crate::verify::refusal::{Refusal, RefusalKind, Site};
 use crate::verify::stage::Hit;
 
 impl<'a> Judge<'a> {
-    fn world_from_tool(&self) -> Isometry3<f64> {
+    pub(super) fn world_from_tool(&self) -> Isometry3<f64> {
         self.world_from_robot * self.links[self.robot.tool]
+    }
+
+    /// Where gravity pulls, in the axes of the tool.
+    fn down_in_tool(&self) -> Vector3<f64> {
+        self.world_from_tool().rotation.inverse() * -Vector3::z()
     }
 
     /// Puts the objects where they are at `s`: held ones by the hand, pushed ones along their way.
@@ -73,6 +78,10 @@ impl<'a> Judge<'a> {
                 site.refusal(time, RefusalKind::Tilt, text)
                     .about(self.world.object_name(holding.object), "the vertical")
             })?;
+            let name = self.world.object_name(holding.object);
+            self.hold.as_ref().map_or(Ok(()), |hold| hold.check(&self.down_in_tool())).map_err(|text| {
+                site.refusal(time, RefusalKind::Hold, format!("the hand cannot hold {name}: it {text}"))
+            })?;
         }
         if let Some([start, end]) = &trial.line {
             self.check_line(site, time, start, end)?;
@@ -105,6 +114,8 @@ impl<'a> Judge<'a> {
         let inside = held.map_or(f64::INFINITY, |(object, pose)| {
             // What tilts it is the arm, and no faster than its joints turn.
             let upright = self.tilt_left(object, pose) / (turn_rad / parts.max(1) as f64);
+            let held = self.hold.as_ref().map_or(f64::INFINITY, |hold| hold.turn_left(&self.down_in_tool()));
+            let upright = upright.min(held / (turn_rad / parts.max(1) as f64));
             (self.inside_object_bounds(pose) / travel_m).min(if turn_rad > 0.0 { upright } else { f64::INFINITY })
         });
         self.stage.idle_parts().min(inside).clamp(0.0, parts as f64) as usize
