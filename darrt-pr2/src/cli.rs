@@ -4,7 +4,7 @@
 //!
 //! | question | file |
 //! |---|---|
-//! | which commands and options are there? | [`args`], [`choices`] |
+//! | which commands and options are there? | [`args`], [`choices`], [`safety`] |
 //! | how did it end? | [`exit`] |
 //! | how are texts and files written? | `output` |
 //! | what does each command do? | `plan`, `check`, `problems`, `show`, `schema`, `bench`, `generate` |
@@ -23,6 +23,7 @@ mod output;
 mod plan;
 mod problems;
 mod progress;
+pub mod safety;
 mod schema;
 mod show;
 mod statistics;

@@ -110,6 +110,8 @@ pub struct PlanResult {
     pub execution_s: Option<f64>,
     /// How many plans were found, of which it is the cheapest; at most 1 unless plans were to be improved.
     pub plans: u64,
+    /// What the problem itself puts nearer to each other than the least margin.
+    pub near: Vec<NearPair>,
     /// Why it stopped.
     pub stop: Stop,
     /// Counts per primitive.
@@ -283,6 +285,7 @@ fn result(
         proof,
         execution_s,
         plans: 0,
+        near: prepared.near.clone(),
         stop: outcome.stop,
         accounts: outcome.accounts,
         iterations: outcome.iterations,

@@ -10,6 +10,8 @@
 //! | what may a step do, what may it touch? | `mode` |
 //! | what lies between two waypoints? | `motion` |
 //! | which solids may not touch, do they? | `stage`, `solid` |
+//! | how far do they keep from each other? | `margins`, `near` |
+//! | what is right and still odd? | `judge::remarks`, `warning` |
 //! | when must a pair be looked at again? | `approach` |
 //! | is an object gripped, or pushed as pushes go? | `hand` |
 //! | over which of the surfaces that lie flush is an object? | `flush` |
@@ -24,8 +26,10 @@ mod goal;
 mod hand;
 mod hold;
 mod judge;
+mod margins;
 mod mode;
 mod motion;
+mod near;
 mod options;
 mod refusal;
 mod robot;
@@ -34,11 +38,13 @@ mod solid;
 mod stage;
 mod start;
 mod surface;
+mod warning;
 mod world;
 
 pub use options::VerifyOptions;
 pub use refusal::{Refusal, RefusalKind};
 pub use stage::SmallestClearance;
+pub use warning::{Warning, WarningKind};
 
 use darrt_core::budget::Cancel;
 
@@ -55,8 +61,13 @@ pub struct Proof {
     pub states: u64,
     /// Pairs of solids that were near enough to need the exact test.
     pub exact_tests: u64,
-    /// The smallest distance seen between two bodies that may not touch; `None` if none came near.
+    /// The smallest distance seen between two bodies that need not be near; `None` if none came near.
     pub smallest_clearance: Option<SmallestClearance>,
+    /// The same of two bodies that must be near and may not touch: hand or handled object, against that object and what
+    /// carries it.
+    pub smallest_intended: Option<SmallestClearance>,
+    /// What a careful engineer would ask about, in the order of the steps.
+    pub warnings: Vec<Warning>,
 }
 
 /// Replays `plan` with the default [`VerifyOptions`].

@@ -7,6 +7,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::choices::{DistanceChoice, ImproveChoice, SamplerChoice, SearchChoice};
+use super::safety::SafetyOptions;
 use crate::bench::Shard;
 
 /// Most attempts at the same time.
@@ -38,7 +39,7 @@ Exit codes:
   0    solved, or the plan is accepted
   1    not solved within the budget
   2    bad input or usage
-  3    the verifier refuses the plan
+  3    the verifier refuses the plan; with `check --strict` also a plan with warnings
   4    the output cannot be written
   130  interrupted";
 
@@ -135,6 +136,9 @@ pub struct PlanOptions {
     /// Print nothing but errors
     #[arg(short, long, conflicts_with = "stats")]
     pub quiet: bool,
+    /// Margins in the place of those of the problem.
+    #[command(flatten)]
+    pub safety: SafetyOptions,
 }
 
 /// Options of `darrt check`.
@@ -145,6 +149,12 @@ pub struct CheckOptions {
     /// Print the steps of the plan too
     #[arg(long)]
     pub steps: bool,
+    /// Accept no plan with warnings
+    #[arg(long)]
+    pub strict: bool,
+    /// Print what was found as one JSON object
+    #[arg(long, conflicts_with_all = ["steps", "quiet"])]
+    pub json: bool,
     /// Print nothing but errors
     #[arg(short, long, conflicts_with = "steps")]
     pub quiet: bool,

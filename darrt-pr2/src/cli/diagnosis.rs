@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use darrt_core::budget::Stop;
 use darrt_core::observe::accounts::{Accounts, Bucket};
+use darrt_primitives::surroundings::NearPair;
 
 use crate::planning::PlanResult;
 use crate::words::counted;
@@ -33,6 +34,13 @@ pub(super) fn explain(result: &PlanResult) -> String {
     }
     for ((first, second), count) in result.accounts.worst_blocks(PAIRS) {
         line(format!("in the way {}: {first} and {second}", counted(count, "time")));
+    }
+    for NearPair { bodies: [first, second], distance_m, is_at_goal } in &result.near {
+        let place = if *is_at_goal { "at the goal" } else { "at the start" };
+        line(format!(
+            "nearer than the least margin {place}: {first} and {second}, {:.2} mm apart",
+            distance_m * 1000.0
+        ));
     }
     never_worked(&result.accounts).into_iter().for_each(&mut line);
     if let Some(refusal) = &result.last_refusal {
@@ -90,6 +98,7 @@ mod tests {
             execution_s: None,
             plan: None,
             plans: 0,
+            near: Vec::new(),
             stop: Stop::TimeLimit,
             accounts,
             iterations: 4,

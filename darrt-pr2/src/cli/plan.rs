@@ -9,7 +9,7 @@ use super::args::PlanOptions;
 use super::exit::{Exit, Failure};
 use super::output::{self, Output};
 use super::progress::Progress;
-use super::{check, diagnosis, statistics, steps};
+use super::{check, diagnosis, safety, statistics, steps};
 use crate::picture::{self, Extent, Format, Story};
 use crate::plan_file::PlanFile;
 use crate::planning::{self, PlanRequest, PlanResult};
@@ -21,7 +21,7 @@ use crate::words::counted;
 /// # Errors
 /// Every end but a verified plan that is written, with its exit code.
 pub(super) fn run(options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
-    let problem = ProblemFile::open(&options.problem)?;
+    let problem = options.safety.applied(ProblemFile::open(&options.problem)?, &options.problem)?;
     let files = Files::choose(options)?;
     let request = request(options, problem);
     let cancel = Cancel::new();
@@ -41,6 +41,10 @@ pub(super) fn run(options: &PlanOptions, output: &mut Output) -> Result<Exit, Fa
         output.print(&summary(&request, &result, cancel.is_cancelled()))?;
         output.print(&steps::table(&story))?;
         output.print(&check::words(proof))?;
+        output.print(&safety::margins(&request.problem))?;
+        if !proof.warnings.is_empty() {
+            output.print(&safety::notices(&proof.warnings))?;
+        }
         output.print(&files.words())?;
     }
     Ok(Exit::Solved)

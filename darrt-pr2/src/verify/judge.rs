@@ -4,6 +4,7 @@ mod chain;
 mod changes;
 mod limits;
 mod moment;
+mod remarks;
 
 use darrt_core::budget::Cancel;
 use nalgebra::{Isometry3, Vector2};
@@ -12,6 +13,7 @@ use super::approach::{Approach, Movers};
 use super::goal;
 use super::hand::{PushCore, check_grip};
 use super::hold::{Hold, check_hold};
+use super::margins::{MarginKind, Margins};
 use super::mode::{Act, Mode, Permits};
 use super::motion::{Segment, State};
 use super::options::VerifyOptions;
@@ -19,9 +21,10 @@ use super::refusal::{Refusal, RefusalKind, Site};
 use super::robot::{Robot, world_from_robot};
 use super::stage::{PairKind, Rule, Stage};
 use super::world::World;
-use super::{Proof, start};
+use super::{Proof, near, start};
 use crate::plan_file::{PlanFile, Step, Waypoint};
 use crate::problem_file::PrimitiveName;
+use remarks::Remarks;
 
 /// A pushed object that goes less than this in a segment stands still, metres.
 const STANDS_M: f64 = 1e-9;
@@ -34,6 +37,8 @@ pub(super) struct Judge<'a> {
     robot: Robot,
     world: World<'a>,
     stage: Stage,
+    margins: Margins,
+    remarks: Remarks,
     approach: Approach,
     /// By object.
     modes: Vec<Mode>,
@@ -94,7 +99,8 @@ impl<'a> Judge<'a> {
         plan.problem.validate(&name).map_err(|e| Refusal::whole(RefusalKind::Problem, e.to_string()))?;
         let robot = Robot::new(&plan.problem)?;
         let world = World::new(&plan.problem)?;
-        let stage = Stage::new(&robot, &world, options.support_m);
+        let margins = Margins::of(&plan.problem);
+        let stage = Stage::new(&robot, &world, options.support_m, margins);
         let approach = Approach::new(&robot)
             .ok_or_else(|| Refusal::whole(RefusalKind::Problem, "more joints move than any robot of this kind has"))?;
         let modes = world.movables.iter().map(|m| Mode::Resting { surface: m.start_surface }).collect();
@@ -105,6 +111,8 @@ impl<'a> Judge<'a> {
             robot,
             world,
             stage,
+            margins,
+            remarks: Remarks::default(),
             approach,
             modes,
             hold: None,
@@ -124,12 +132,17 @@ impl<'a> Judge<'a> {
             last = step.waypoints.last().unwrap_or(last);
         }
         goal::check(&self.plan.problem, &self.world, &here, &self.modes)?;
+        let warnings = self.warnings(&here);
+        let [robot, held, object, itself, near] = self.stage.smallest;
+        let unintended = [robot, held, object, itself].into_iter().flatten();
         Ok(Proof {
             steps: self.plan.steps.len(),
             waypoints: self.waypoints,
             states: self.stage.states,
             exact_tests: self.stage.exact_tests,
-            smallest_clearance: self.stage.smallest,
+            smallest_clearance: unintended.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m)),
+            smallest_intended: near,
+            warnings,
         })
     }
 
@@ -141,20 +154,23 @@ impl<'a> Judge<'a> {
         self.check_limits(&state).map_err(|(kind, flaw)| refuse(kind, flaw))?;
         let (world, modes) = (&self.world, &self.modes);
         self.stage.set_movers(|_| Movers::NONE, |_| Movers::NONE);
-        self.stage.set_rules(|pair| match (pair, pair_object(pair).and_then(|o| modes.get(o))) {
-            (PairKind::ObjectFixed { object, fixed }, Some(Mode::Resting { surface }))
-                if world.carries(object, *surface, fixed) =>
-            {
-                Rule::Standing
-            }
-            _ => Rule::Apart,
+        self.stage.set_rules(|pair| match pair {
+            PairKind::ObjectFixed { object, fixed } => match modes.get(object) {
+                Some(Mode::Resting { surface }) if world.carries(object, *surface, fixed) => Rule::Standing,
+                _ => Rule::Apart(MarginKind::Object),
+            },
+            PairKind::Objects(..) => Rule::Apart(MarginKind::Object),
+            PairKind::LinkObject { .. } | PairKind::LinkFixed { .. } => Rule::Apart(MarginKind::Robot),
+            PairKind::Links => Rule::Apart(MarginKind::Itself),
         });
         self.robot.link_poses(&state.joints, &mut self.links);
         self.world_from_robot = world_from_robot(&state.base);
         self.stage.place(&self.world_from_robot, &self.links, &state.objects, 0);
+        let mut near = self.stage.accept_near();
+        near.extend(near::at_goals(&self.plan.problem, &self.world, &state.objects, &mut self.stage));
+        self.remarks.note_near(&near, self.plan.problem.safety.least_margin_m);
         self.stage.check(0, 0.0).map_err(|hit| {
-            let words = format!("{} and {} collide", hit.names.0, hit.names.1);
-            refuse(RefusalKind::Collision, words).about(&hit.names.0, &hit.names.1).at(&hit.place)
+            refuse(RefusalKind::Collision, hit.words()).about(&hit.names.0, &hit.names.1).at(&hit.place)
         })?;
         Ok(state)
     }
@@ -184,7 +200,8 @@ impl<'a> Judge<'a> {
         };
         let of_solid = |solid: usize| self.robot.solids.get(solid).map_or(Movers::NONE, |s| approach.of_link(s.link));
         self.stage.set_movers(of_solid, of_object);
-        self.stage.set_rules(|pair| permits.rule(pair, &act, world, modes));
+        self.stage.set_rules(|pair| permits.rule(pair, &act, &self.robot, world, modes));
+        self.stage.begin_step();
         let states = self.states(site, step, here)?;
         let trial = self.trial(site, step, act, &states)?;
         let count = states.len() - 1;
@@ -193,10 +210,14 @@ impl<'a> Judge<'a> {
                 self.segment(&trial, Place { index, count }, from, to)?;
             }
         }
+        if let Some(near) = self.stage.too_near.take() {
+            let refusal = site.refusal(near.time, RefusalKind::Margin, near.words());
+            return Err(refusal.about(&near.names.0, &near.names.1).at(&near.place));
+        }
         self.waypoints += step.waypoints.len();
-        let end = states.into_iter().next_back();
-        let end = end.ok_or_else(|| site.refusal(0.0, RefusalKind::Malformed, "has no waypoints"))?;
+        let end = states.last().ok_or_else(|| site.refusal(0.0, RefusalKind::Malformed, "has no waypoints"))?.clone();
         self.finish(&trial, &end)?;
+        self.remark(&trial, &states);
         Ok(end)
     }
 
@@ -321,14 +342,6 @@ impl<'a> Judge<'a> {
             *slot = mode;
         }
         Ok(())
-    }
-}
-
-/// The object of a pair, if it has one.
-fn pair_object(pair: PairKind) -> Option<usize> {
-    match pair {
-        PairKind::LinkObject { object, .. } | PairKind::ObjectFixed { object, .. } => Some(object),
-        PairKind::Other => None,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use nalgebra::Isometry3;
 
+use super::margins::MarginKind;
 use super::motion::sound;
 use super::refusal::{Refusal, RefusalKind, Site};
 use super::robot::Robot;
@@ -119,6 +120,8 @@ pub(super) struct Permits {
     fingers: Vec<(usize, usize)>,
     /// Object and fixed body.
     support: Vec<(usize, usize)>,
+    /// The object at which the hand is at work, and the surfaces on which that may stand.
+    work: Option<(usize, Vec<usize>)>,
 }
 
 impl Permits {
@@ -131,7 +134,7 @@ impl Permits {
         world: &World<'_>,
         modes: &[Mode],
     ) -> Result<Self, Refusal> {
-        let mut permits = Self::default();
+        let mut permits = Self { work: work(site.primitive, act, world, modes), ..Self::default() };
         for contact in &step.allowed_contacts {
             let (a, b) = (contact.a.as_str(), contact.b.as_str());
             let found = permits.admit(site, contact, (a, b), act, robot, world, modes)
@@ -186,18 +189,54 @@ impl Permits {
     }
 
     /// How a pair is treated in a step.
-    pub(super) fn rule(&self, pair: PairKind, act: &Act, world: &World<'_>, modes: &[Mode]) -> Rule {
-        match pair {
-            PairKind::LinkObject { link, object } if self.fingers.contains(&(link, object)) => Rule::Free,
+    pub(super) fn rule(&self, pair: PairKind, act: &Act, robot: &Robot, world: &World<'_>, modes: &[Mode]) -> Rule {
+        let is_held = |object| act.holding.is_some_and(|holding| holding.object == object);
+        let is_handled = |object| self.work.as_ref().is_some_and(|(own, _)| *own == object);
+        let is_under = |fixed| {
+            self.work.as_ref().is_some_and(|(own, surfaces)| surfaces.iter().any(|s| world.carries(*own, *s, fixed)))
+        };
+        let is_hand = |link| robot.hand.binary_search(&link).is_ok();
+        let of_object = |object| if is_held(object) { MarginKind::Held } else { MarginKind::Object };
+        let kind = match pair {
+            PairKind::LinkObject { link, object } if self.fingers.contains(&(link, object)) => return Rule::Free,
+            PairKind::LinkObject { link, object } if is_hand(link) && (is_handled(object) || is_held(object)) => {
+                MarginKind::Near
+            }
+            PairKind::LinkFixed { link, fixed } if is_hand(link) && is_under(fixed) => MarginKind::Near,
+            PairKind::LinkObject { .. } | PairKind::LinkFixed { .. } => MarginKind::Robot,
             PairKind::ObjectFixed { object, fixed } => {
-                let is_held = act.holding.is_some_and(|holding| holding.object == object);
                 let stands = match modes.get(object) {
-                    Some(Mode::Resting { surface }) if !is_held => world.carries(object, *surface, fixed),
+                    Some(Mode::Resting { surface }) if !is_held(object) => world.carries(object, *surface, fixed),
                     _ => self.support.contains(&(object, fixed)),
                 };
-                if stands { Rule::Standing } else { Rule::Apart }
+                if stands {
+                    return Rule::Standing;
+                }
+                if is_handled(object) && is_under(fixed) { MarginKind::Near } else { of_object(object) }
             }
-            _ => Rule::Apart,
-        }
+            PairKind::Objects(a, b) => {
+                if is_held(a) {
+                    MarginKind::Held
+                } else {
+                    of_object(b)
+                }
+            }
+            PairKind::Links => MarginKind::Itself,
+        };
+        Rule::Apart(kind)
     }
+}
+
+/// The object at which the hand is at work in such a step, and the surfaces on which it stands, or may be set down.
+fn work(primitive: PrimitiveName, act: &Act, world: &World<'_>, modes: &[Mode]) -> Option<(usize, Vec<usize>)> {
+    use PrimitiveName as P;
+    if !matches!(primitive, P::StraightLineArmTransit | P::Push | P::Pick | P::Place) {
+        return None;
+    }
+    let object = act.holding.map(|holding| holding.object).or(act.object)?;
+    let surfaces = match modes.get(object)? {
+        Mode::Resting { surface } => vec![*surface],
+        Mode::Held { .. } => world.movables.get(object)?.surfaces.clone(),
+    };
+    Some((object, surfaces))
 }

@@ -52,6 +52,8 @@ pub(super) struct Robot {
     pub(super) tool: usize,
     /// Links of the manipulating hand that may touch things: two fingers, then two tips.
     pub(super) fingers: [usize; 4],
+    /// Links of the manipulating hand: all that moves with the wrist's last joint, in ascending order.
+    pub(super) hand: Vec<usize>,
     /// The variable that opens the manipulating hand.
     pub(super) finger_joint: usize,
     /// Links that move with the manipulating arm or its fingers, in ascending order.
@@ -102,8 +104,10 @@ impl Robot {
         let limits = limits.collect();
         let self_pairs = self_pairs(&tree, &solids, side);
         let table = JointTable::new(&description, &tree);
-        let arm_links = arm_links(&tree, &roles);
-        Ok(Self { tree, table, solids, self_pairs, roles, limits, side, tool, fingers, finger_joint, arm_links })
+        let arm_links = links_moved(&tree, |variable| roles.get(variable) != Some(&Role::Parked));
+        let wrist = variable(&format!("{}_wrist_roll_joint", side.prefix()))?;
+        let hand = links_moved(&tree, |variable| variable == wrist);
+        Ok(Self { tree, table, solids, self_pairs, roles, limits, side, tool, fingers, hand, finger_joint, arm_links })
     }
 
     /// Name of a variable's joint.
@@ -208,15 +212,15 @@ impl Robot {
     }
 }
 
-/// The links that move with the arm or its fingers, in ascending order.
-fn arm_links(tree: &KinematicTree, roles: &[Role]) -> Vec<usize> {
+/// The links that one of these variables moves, in ascending order.
+fn links_moved(tree: &KinematicTree, moves: impl Fn(usize) -> bool) -> Vec<usize> {
     let mut is_moved = vec![false; tree.link_count()];
     for link in 1..is_moved.len() {
         let drive = match tree.motion(link) {
             Some(LinkMotion::Turning { drive, .. } | LinkMotion::Sliding { drive, .. }) => Some(drive),
             _ => None,
         };
-        let own = drive.is_some_and(|drive| roles.get(drive.variable) != Some(&Role::Parked));
+        let own = drive.is_some_and(|drive| moves(drive.variable));
         is_moved[link] = own || tree.parent(link).is_some_and(|parent| is_moved[parent]);
     }
     is_moved.iter().enumerate().filter(|(_, is_moved)| **is_moved).map(|(link, _)| link).collect()
@@ -303,6 +307,10 @@ mod tests {
         assert_eq!((count(Role::Arm), count(Role::Finger)), (7, 1));
         assert!(robot.is_finger("r_gripper_l_finger_tip_link") && !robot.is_finger("l_gripper_l_finger_tip_link"));
         assert!(!robot.is_finger("r_gripper_palm_link"));
+        let palm = robot.tree.link_index("r_gripper_palm_link").unwrap();
+        let forearm = robot.tree.link_index("r_forearm_link").unwrap();
+        assert!(robot.hand.contains(&palm) && robot.fingers.iter().all(|finger| robot.hand.contains(finger)));
+        assert!(!robot.hand.contains(&forearm));
         assert!(robot.self_pairs.len() > 100);
     }
 }

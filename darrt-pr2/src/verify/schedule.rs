@@ -16,6 +16,9 @@ pub(super) const AHEAD_PARTS: f64 = 10.0;
 /// is known.
 const HORIZON_M: f64 = 0.02;
 
+/// In how many ways pairs are treated that are looked at.
+pub(super) const RULES: usize = 6;
+
 /// What is known of a pair.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Due {
@@ -28,10 +31,8 @@ pub(super) struct Due {
 #[derive(Debug, Default)]
 pub(super) struct Class {
     pub(super) between: Movers,
-    /// The pairs that may not touch.
-    pub(super) apart: Pairs,
-    /// The pairs of which one stands on the other.
-    pub(super) standing: Pairs,
+    /// By rule: those that keep a margin, by its kind, then those of which one stands on the other.
+    pub(super) pairs: [Pairs; RULES],
     pub(super) going: Going,
     /// No pair need be looked at before they have moved so far, metres.
     pub(super) due_m: f64,

@@ -6,8 +6,9 @@ use darrt_geom::Shape;
 use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::approach::{Movers, Speeds};
+use super::margins::{self, MarginKind, Margins, NEARLY_M, STRAY_M};
 use super::robot::{LinkSolid, Robot};
-use super::schedule::{AHEAD_PARTS, Class, Due, Going, Pairs, ROUNDING_M, smaller};
+use super::schedule::{AHEAD_PARTS, Class, Due, Going, Pairs, ROUNDING_M, RULES, smaller};
 use super::solid::{Placed, Solid, exact, gap_across, lower_bound};
 use super::world::World;
 
@@ -24,8 +25,8 @@ const FRESH: f64 = 0.5;
 /// How a pair is treated during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Rule {
-    /// They may not touch.
-    Apart,
+    /// They may not touch, and keep a margin.
+    Apart(MarginKind),
     /// They may.
     Free,
     /// The first stands on the second: lifted a little it must be clear of it.
@@ -36,16 +37,15 @@ pub(super) enum Rule {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PairKind {
     /// A link and an object, by index.
-    LinkObject {
-        link: usize,
-        object: usize,
-    },
+    LinkObject { link: usize, object: usize },
+    /// A link and a fixed body, by index.
+    LinkFixed { link: usize, fixed: usize },
     /// An object and a fixed body, by index.
-    ObjectFixed {
-        object: usize,
-        fixed: usize,
-    },
-    Other,
+    ObjectFixed { object: usize, fixed: usize },
+    /// Two objects, by index.
+    Objects(usize, usize),
+    /// Two links.
+    Links,
 }
 
 #[derive(Debug)]
@@ -54,6 +54,8 @@ struct Pair {
     b: usize,
     kind: PairKind,
     rule: Rule,
+    /// Nearer than its margin the pair may be down to this distance, metres; infinite if it may not.
+    may_m: f64,
     /// The direction across which the two were last found apart, world; zero if none is known.
     across: Vector3<f64>,
     /// How far apart they were then, metres.
@@ -65,6 +67,33 @@ struct Pair {
 pub(super) struct Hit {
     pub(super) names: (String, String),
     pub(super) place: Point3<f64>,
+}
+
+/// Two solids that are nearer to each other than their margin.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TooNear {
+    pub(super) names: (String, String),
+    pub(super) place: Point3<f64>,
+    distance_m: f64,
+    margin_m: f64,
+    /// Fraction of the step.
+    pub(super) time: f64,
+}
+
+impl Hit {
+    /// What is wrong.
+    pub(super) fn words(&self) -> String {
+        format!("{} and {} collide", self.names.0, self.names.1)
+    }
+}
+
+impl TooNear {
+    /// What is wrong.
+    pub(super) fn words(&self) -> String {
+        let ((a, b), [distance, margin]) =
+            (&self.names, [self.distance_m, self.margin_m].map(|metres| metres * 1000.0));
+        format!("{a} and {b} are {distance:.2} mm apart, at least {margin:.2} mm must be kept")
+    }
 }
 
 /// The smallest distance seen between two bodies that may not touch. Between the states looked at none came nearer than half
@@ -107,14 +136,24 @@ pub(super) struct Stage {
     pub(super) states: u64,
     /// Questions to the oracle.
     pub(super) exact_tests: u64,
-    pub(super) smallest: Option<SmallestClearance>,
-    /// Its distance, metres.
-    nearest_m: f64,
+    margins: Margins,
+    /// By kind of margin: the smallest distances seen, of all steps.
+    pub(super) smallest: [Option<SmallestClearance>; 5],
+    /// By kind of margin: those of this step that are smaller than what is wanted.
+    pub(super) smallest_of_step: [Option<SmallestClearance>; 5],
+    /// By kind of margin: what is nearer is measured, metres.
+    nearest_m: [f64; 5],
+    /// The first pair of this step that is nearer than its margin. It does not end the step: two that come too near may go on
+    /// to collide, which is the worse fault.
+    pub(super) too_near: Option<TooNear>,
 }
+
+/// Where [`Rule::Standing`] stands among the rules, behind the kinds of margin.
+const STANDING: usize = MarginKind::ALL.len();
 
 impl Stage {
     /// `support_m`: how deep an object may press into what carries it.
-    pub(super) fn new(robot: &Robot, world: &World<'_>, support_m: f64) -> Self {
+    pub(super) fn new(robot: &Robot, world: &World<'_>, support_m: f64, margins: Margins) -> Self {
         let links = robot.solids.len();
         let objects = world.movables.len();
         let first_fixed = links + objects;
@@ -124,24 +163,26 @@ impl Stage {
         let mut poses = vec![Isometry3::identity(); first_fixed];
         poses.extend(world.fixed.iter().map(|(_, pose)| *pose));
         let mut pairs = Vec::new();
-        let mut add =
-            |a, b, kind| pairs.push(Pair { a, b, kind, rule: Rule::Apart, across: Vector3::zeros(), apart_m: 0.0 });
+        let mut add = |a, b, kind| {
+            let (across, rule) = (Vector3::zeros(), Rule::Apart(MarginKind::Itself));
+            pairs.push(Pair { a, b, kind, rule, may_m: f64::INFINITY, across, apart_m: 0.0 });
+        };
         for (i, solid) in robot.solids.iter().enumerate() {
             (0..objects).for_each(|o| add(i, links + o, PairKind::LinkObject { link: solid.link, object: o }));
             let lowest_m = robot.lowest_m(i);
             for f in first_fixed..solids.len() {
                 // What the base carries at a height of its own never comes nearer to a plane that it drives on.
                 if lowest_m.is_none_or(|lowest_m| !lies_below(&solids[f], &poses[f], lowest_m)) {
-                    add(i, f, PairKind::Other);
+                    add(i, f, PairKind::LinkFixed { link: solid.link, fixed: f - first_fixed });
                 }
             }
         }
-        robot.self_pairs.iter().for_each(|&(a, b)| add(a, b, PairKind::Other));
+        robot.self_pairs.iter().for_each(|&(a, b)| add(a, b, PairKind::Links));
         for o in 0..objects {
             for f in 0..world.fixed.len() {
                 add(links + o, first_fixed + f, PairKind::ObjectFixed { object: o, fixed: f });
             }
-            (o + 1..objects).for_each(|other| add(links + o, links + other, PairKind::Other));
+            (o + 1..objects).for_each(|other| add(links + o, links + other, PairKind::Objects(o, other)));
         }
         Self {
             movers: vec![Movers::NONE; solids.len()],
@@ -160,8 +201,11 @@ impl Stage {
             lift_m: support_m + LIFT_SLACK_M,
             states: 0,
             exact_tests: 0,
-            smallest: None,
-            nearest_m: f64::INFINITY,
+            margins,
+            smallest: Default::default(),
+            smallest_of_step: Default::default(),
+            nearest_m: [f64::INFINITY; 5],
+            too_near: None,
         }
     }
 
@@ -182,27 +226,26 @@ impl Stage {
     pub(super) fn set_rules(&mut self, rule: impl Fn(PairKind) -> Rule) {
         let mut known = vec![(Movers::NONE, f64::NEG_INFINITY); self.pairs.len()];
         for class in std::mem::take(&mut self.classes) {
-            for due in class.apart.dues.iter().chain(&class.standing.dues) {
+            for due in class.pairs.iter().flat_map(|pairs| &pairs.dues) {
                 known[due.pair] = (class.between, due.reserve_m - class.going.travelled_m);
             }
         }
-        let mut dues: BTreeMap<Movers, [Vec<Due>; 2]> = BTreeMap::new();
+        let mut dues: BTreeMap<Movers, [Vec<Due>; RULES]> = BTreeMap::new();
         for ((index, pair), (moved, known_m)) in self.pairs.iter_mut().enumerate().zip(known) {
             let before = std::mem::replace(&mut pair.rule, rule(pair.kind));
             let between = self.movers[pair.a].between(self.movers[pair.b]);
-            let [apart, standing] = dues.entry(between).or_default();
+            let dues = dues.entry(between).or_default();
             let reserve_m = if (pair.rule, between) == (before, moved) { known_m } else { f64::NEG_INFINITY };
             let due = Due { reserve_m, pair: index };
             match pair.rule {
                 Rule::Free => {}
-                Rule::Apart => apart.push(due),
-                Rule::Standing => standing.push(due),
+                Rule::Apart(kind) => dues[kind.index()].push(due),
+                Rule::Standing => dues[STANDING].push(due),
             }
         }
-        let class = |(between, [apart, standing]): (Movers, [Vec<Due>; 2])| Class {
+        let class = |(between, dues): (Movers, [Vec<Due>; RULES])| Class {
             between,
-            apart: Pairs::new(apart),
-            standing: Pairs::new(standing),
+            pairs: dues.map(Pairs::new),
             ..Class::default()
         };
         self.classes = dues.into_iter().map(class).collect();
@@ -285,11 +328,11 @@ impl Stage {
         if class.going.travelled_m < class.due_m {
             return Ok(());
         }
-        let Class { apart, standing, going, due_m, .. } = class;
+        let Class { pairs, going, due_m, .. } = class;
         *due_m = f64::INFINITY;
-        for (pairs, is_standing) in [(standing, true), (apart, false)] {
+        for (rule, pairs) in pairs.iter_mut().enumerate() {
             if !pairs.dues.is_empty() {
-                *due_m = due_m.min(self.check_pairs(*going, pairs, is_standing, step, time)?);
+                *due_m = due_m.min(self.check_pairs(*going, pairs, rule, step, time)?);
             }
         }
         Ok(())
@@ -297,16 +340,9 @@ impl Stage {
 
     /// Looks at those of the `pairs` of a class that are due, and finds out when the next one is: when the class has moved so
     /// far, metres.
-    fn check_pairs(
-        &mut self,
-        going: Going,
-        pairs: &mut Pairs,
-        is_standing: bool,
-        step: u32,
-        time: f64,
-    ) -> Result<f64, Hit> {
+    fn check_pairs(&mut self, going: Going, pairs: &mut Pairs, rule: usize, step: u32, time: f64) -> Result<f64, Hit> {
         let Going { travelled_m, part_m, ahead_m } = going;
-        let of_interest_m = |stage: &Self| if is_standing { 0.0 } else { SOUGHT * stage.nearest_m };
+        let of_interest_m = |stage: &Self| stage.of_interest_m(rule);
         // A pair is due when its reserve is no more than this.
         let due_m = |enough_m: f64| travelled_m + enough_m + ahead_m + ROUNDING_M;
         let first_due_m = due_m(of_interest_m(self));
@@ -334,18 +370,32 @@ impl Stage {
     pub(super) fn idle_parts(&self) -> f64 {
         let moving = self.classes.iter().filter(|class| class.going.part_m > 0.0);
         let parts = moving.map(|class| {
-            let apart_m = class.apart.least_m() - SOUGHT * self.nearest_m;
-            (apart_m.min(class.standing.least_m()) - class.going.travelled_m - ROUNDING_M) / class.going.part_m
+            let spare_m =
+                class.pairs.iter().enumerate().map(|(rule, pairs)| pairs.least_m() - self.of_interest_m(rule));
+            let spare_m = spare_m.fold(f64::INFINITY, f64::min);
+            (spare_m - class.going.travelled_m - ROUNDING_M) / class.going.part_m
         });
         parts.fold(f64::INFINITY, f64::min).max(0.0)
     }
 
-    /// Looks at one pair: a lower bound of its distance that is above 0 and, if it may be the smallest so far, exact.
+    /// Pairs under this rule that are nearer than this are looked at, metres.
+    fn of_interest_m(&self, rule: usize) -> f64 {
+        let least_m = self.margins.least_m.get(rule).copied().unwrap_or(0.0);
+        self.nearest_m.get(rule).map_or(0.0, |nearest| (SOUGHT * nearest).max(least_m))
+    }
+
+    /// Looks at one pair: a lower bound of its distance that is above its margin and, if it may be the smallest so far, exact.
     fn look(&mut self, index: usize, enough_m: f64, step: u32, time: f64) -> Result<f64, Hit> {
-        let nearest = self.nearest_m;
-        let Pair { a, b, rule, .. } = self.pairs[index];
-        let is_counted = |bound: f64| rule == Rule::Apart && bound < nearest;
-        let is_clear = |bound: f64, enough_m: f64| bound > 0.0 && !is_counted(bound) && bound >= enough_m;
+        let Pair { a, b, rule, may_m, .. } = self.pairs[index];
+        let kind = match rule {
+            Rule::Apart(kind) => Some(kind.index()),
+            _ => None,
+        };
+        let nearest = kind.map_or(f64::NEG_INFINITY, |kind| self.nearest_m[kind]);
+        let least_m = kind.map_or(0.0, |kind| self.margins.least_m[kind].min(may_m));
+        let is_counted = |bound: f64| bound < nearest;
+        let is_clear =
+            |bound: f64, enough_m: f64| bound > 0.0 && bound >= least_m && !is_counted(bound) && bound >= enough_m;
         // OPTIMIZATION: the balls mostly suffice. That around a half space is infinite.
         let [mut centre_a, centre_b] = [a, b].map(|solid| self.centre(solid));
         if rule == Rule::Standing {
@@ -389,13 +439,110 @@ impl Stage {
         if answer.intersects {
             return Err(Hit { names: names(), place: answer.place });
         }
-        if is_counted(bound) && answer.distance < nearest {
-            self.nearest_m = answer.distance;
-            self.smallest = Some(SmallestClearance { distance_m: answer.distance, bodies: names(), step, time });
+        if answer.distance < least_m - margins::ROUNDING_M && self.too_near.is_none() {
+            let (names, place, distance_m) = (names(), answer.place, answer.distance);
+            self.too_near = Some(TooNear { names, place, distance_m, margin_m: least_m, time });
+        }
+        if let Some(kind) = kind
+            && is_counted(bound)
+            && answer.distance < nearest
+        {
+            let found = SmallestClearance { distance_m: answer.distance, bodies: names(), step, time };
+            self.nearest_m[kind] = answer.distance;
+            self.note_clearance(kind, found);
         }
         let pair = &mut self.pairs[index];
         (pair.across, pair.apart_m) = (answer.across, answer.lower);
         Ok(answer.lower.max(bound))
+    }
+
+    fn note_clearance(&mut self, kind: usize, found: SmallestClearance) {
+        if self.smallest[kind].as_ref().is_none_or(|known| found.distance_m < known.distance_m) {
+            self.smallest[kind] = Some(found.clone());
+        }
+        if found.distance_m < self.margins.wanted_m[kind] {
+            self.smallest_of_step[kind] = Some(found);
+        }
+    }
+
+    /// Another step begins: what is nearer than is wanted in it, or nearer than anything before, is found out.
+    pub(super) fn begin_step(&mut self) {
+        self.smallest_of_step = Default::default();
+        for (kind, nearest) in self.nearest_m.iter_mut().enumerate() {
+            let known = self.smallest[kind].as_ref().map_or(f64::INFINITY, |smallest| smallest.distance_m);
+            *nearest = known.max(self.margins.wanted_m[kind]);
+        }
+    }
+
+    /// Pairs that are nearer than their margin where they stand now, but apart, may be nearly as near from here on.
+    pub(super) fn accept_near(&mut self) -> Vec<margins::Placed> {
+        let mut found = Vec::new();
+        for index in 0..self.pairs.len() {
+            let Pair { a, b, rule: Rule::Apart(kind), .. } = self.pairs[index] else { continue };
+            let [pose_a, pose_b] = [a, b].map(|solid| self.world_from(solid));
+            if let Some(distance_m) = self.accept_pair(index, kind, (&pose_a, &pose_b)) {
+                found.push(margins::Placed::new(&self.solids[a], &self.solids[b], distance_m, false));
+            }
+        }
+        found
+    }
+
+    /// The same for an object at `world_from_object`, against the fixed bodies but for those that `carries` it, and against
+    /// the other objects at `others`.
+    pub(super) fn accept_at(
+        &mut self,
+        object: usize,
+        world_from_object: &Isometry3<f64>,
+        carries: impl Fn(usize) -> bool,
+        others: &[Isometry3<f64>],
+    ) -> Vec<margins::Placed> {
+        let mut found = Vec::new();
+        for index in 0..self.pairs.len() {
+            let Pair { a, b, kind, .. } = self.pairs[index];
+            let pose_b = match kind {
+                PairKind::ObjectFixed { object: own, fixed } if own == object && !carries(fixed) => self.poses[b],
+                PairKind::Objects(own, other) | PairKind::Objects(other, own) if own == object => others[other],
+                _ => continue,
+            };
+            // Of two objects either may be the first.
+            let own_is_first = a == self.links + object;
+            let poses = if own_is_first { (world_from_object, &pose_b) } else { (&pose_b, world_from_object) };
+            if let Some(distance_m) = self.accept_pair(index, MarginKind::Object, poses) {
+                found.push(margins::Placed::new(&self.solids[a], &self.solids[b], distance_m, true));
+            }
+        }
+        found
+    }
+
+    /// If the pair is nearer than its margin at these poses but apart: its distance in metres.
+    fn accept_pair(
+        &mut self,
+        index: usize,
+        kind: MarginKind,
+        (pose_a, pose_b): (&Isometry3<f64>, &Isometry3<f64>),
+    ) -> Option<f64> {
+        let Pair { a, b, .. } = self.pairs[index];
+        let least_m = self.margins.least_m[kind.index()];
+        let (solid_a, solid_b) = (&self.solids[a], &self.solids[b]);
+        let placed = |solid, world_from_solid| {
+            let centre = Solid::world_centre(solid, world_from_solid);
+            Placed { solid, world_from_solid, centre }
+        };
+        if lower_bound(&placed(solid_a, pose_a), &placed(solid_b, pose_b)) >= least_m + NEARLY_M {
+            return None;
+        }
+        let answer = exact(solid_a, pose_a, solid_b, pose_b).ok()?;
+        if answer.intersects || answer.distance >= least_m + NEARLY_M {
+            return None;
+        }
+        let pair = &mut self.pairs[index];
+        pair.may_m = pair.may_m.min((answer.distance - STRAY_M).max(0.0));
+        (answer.distance < least_m - margins::ROUNDING_M).then_some(answer.distance)
+    }
+
+    /// Where a solid is now.
+    fn world_from(&self, solid: usize) -> Isometry3<f64> {
+        if solid < self.links { self.world_from_link_solid(solid) } else { self.poses[solid] }
     }
 
     /// The solid and the pose of an object.

@@ -56,6 +56,37 @@ fn the_fast_check_keeps_its_laws_and_is_never_laxer_than_the_oracle() {
     assert!(blocked.get() >= 5 && tried.get() > blocked.get(), "{} of {}", blocked.get(), tried.get());
 }
 
+/// The same with the margins: what the hand works at may be near, all else keeps its distance, all along every motion.
+#[test]
+fn what_is_called_free_keeps_the_margins() {
+    let tried = Cell::new(0);
+    for name in PROBLEMS {
+        let problem = problem(name);
+        let oracle = SceneOracle::with_margins(&obstacles(name));
+        let (m, validity) = (problem.domain(), problem.validity());
+        proptest!(config(12, REGRESSIONS), |((from, to, seed) in tasks_from(m, valid_states(&problem)))| {
+            for primitive in problem.primitives() {
+                if !primitive.useful(m, &from, &to) {
+                    continue;
+                }
+                let mut rng = stream(seed, 0, 0, Purpose::Extend);
+                let Ok(instances) = primitive.propagate(m, &from, &to, &mut rng) else { continue };
+                let mut at = from.clone();
+                for instance in instances {
+                    check_against_oracle(m, validity, &oracle, &instance, &at, 6)
+                        .map_err(|broken: darrt_core::laws::Broken| broken.of(name))?;
+                    tried.set(tried.get() + 1);
+                    if validity.free_prefix(m, &instance, &at).blame.is_some() {
+                        break;
+                    }
+                    at = instance.at(m, 1.0, &at);
+                }
+            }
+        });
+    }
+    assert!(tried.get() > 20, "{}", tried.get());
+}
+
 /// A step of the conservative advancement that ends in a collision is not made, and a step is up to 0.2 m long (the cap of
 /// the distances): so early may the free prefix end.
 const CLAIMS: ValidityClaims = ValidityClaims { tight_m: 0.21, same_names: false, between: 8 };

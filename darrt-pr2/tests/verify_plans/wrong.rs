@@ -8,6 +8,8 @@ mod ends;
 mod hold;
 #[path = "wrong/manipulation.rs"]
 mod manipulation;
+#[path = "wrong/margins.rs"]
+mod margins;
 #[path = "wrong/motions.rs"]
 mod motions;
 

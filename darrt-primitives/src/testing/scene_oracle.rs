@@ -1,5 +1,5 @@
-//! The slow, obvious judge of table-top states: every body against every other through [`darrt_geom::oracle`], and
-//! whole motions by looking at many states. To hold a fast validity against with
+//! The slow, obvious judge of table-top states: every body against every other through [`darrt_geom::oracle`], with margins or
+//! without, and whole motions by looking at many states. To hold a fast validity against with
 //! [`check_against_oracle`](darrt_core::laws::check_against_oracle).
 
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use darrt_core::motion::Instance;
 use darrt_core::space::ComponentSpace;
 use darrt_core::state::ObjectId;
 use darrt_core::validity::{Blame, BlockKind, FreePrefix, Validity};
-use darrt_geom::oracle::{Finding, PosedBody, intersections};
+use darrt_geom::oracle::{Finding, PosedBody, intersections, nearest};
 use darrt_geom::scene::FixedBody;
 use darrt_geom::shape::Shape;
 use nalgebra::{Isometry3, Point2};
@@ -18,6 +18,9 @@ use crate::manipulator::{LinkGroup, Manipulator};
 use crate::mode::{Contacts, SurfaceId};
 use crate::tabletop::{Tabletop, TabletopState};
 
+/// How far the oracle's distances may be off, metres.
+const ROUNDING_M: f64 = 1e-5;
+
 /// The judge, among these fixed bodies.
 #[derive(Debug, Clone)]
 pub struct SceneOracle {
@@ -25,6 +28,8 @@ pub struct SceneOracle {
     pub fixed: Vec<FixedBody>,
     /// How many states of a motion are looked at.
     pub looks: u32,
+    /// Whether all pairs must keep their margins too.
+    pub asks_margins: bool,
 }
 
 /// Which of the bodies one is.
@@ -38,7 +43,12 @@ enum Kind {
 impl SceneOracle {
     /// Among these bodies.
     pub fn new(fixed: &[FixedBody]) -> Self {
-        Self { fixed: fixed.to_vec(), looks: 64 }
+        Self { fixed: fixed.to_vec(), looks: 64, asks_margins: false }
+    }
+
+    /// The same, and all pairs must keep the least margins of the domain. What begins too near is not excepted.
+    pub fn with_margins(fixed: &[FixedBody]) -> Self {
+        Self { asks_margins: true, ..Self::new(fixed) }
     }
 
     /// Link, object or obstacle: the bodies stand in this order.
@@ -81,6 +91,64 @@ impl SceneOracle {
             }
             _ => matches!((a, b), (Kind::Fixed(_), Kind::Fixed(_))),
         }
+    }
+
+    /// Must these two be near each other?
+    fn may_be_near<M: Manipulator>(
+        &self,
+        m: &Tabletop<M>,
+        state: &TabletopState<M>,
+        contacts: &Contacts,
+        (a, b): (Kind, Kind),
+    ) -> bool {
+        let is_hand = |kind: Kind| match kind {
+            Kind::Link(link) => {
+                let group = m.manipulator().links().get(link).map(|l| l.group);
+                matches!(group, Some(LinkGroup::Hand | LinkGroup::Finger))
+            }
+            _ => false,
+        };
+        let held = state.mode.held().map(|held| held.object);
+        if let (link, Kind::Object(id)) | (Kind::Object(id), link) = (a, b)
+            && is_hand(link)
+            && held == Some(id)
+        {
+            return true;
+        }
+        let named = [contacts.support.map(|(id, _)| id), contacts.fingers.map(|(id, _)| id), state.mode.engaged()];
+        let surface = |id| contacts.support.map(|(_, surface)| surface).or(state.mode.support_of(id));
+        let Some((id, surface)) = named.into_iter().flatten().find_map(|id| Some((id, surface(id)?))) else {
+            return false;
+        };
+        let works = |kind: Kind| is_hand(kind) || kind == Kind::Object(id);
+        let is_worked_at = |kind: Kind| match kind {
+            Kind::Fixed(body) => self.is_under(m, surface, body),
+            kind => kind == Kind::Object(id),
+        };
+        works(a) && is_worked_at(b) || works(b) && is_worked_at(a)
+    }
+
+    /// The first pair found that is nearer than its margin.
+    fn margins<M: Manipulator>(
+        &self,
+        m: &Tabletop<M>,
+        state: &TabletopState<M>,
+        contacts: &Contacts,
+        bodies: &[PosedBody<'_>],
+    ) -> Result<(), Blame> {
+        let safety = &m.settings().safety;
+        for (is_near, margin_m) in [(false, safety.least_margin_m), (true, safety.contact_margin_m)] {
+            let skip = |a, b| {
+                let pair = (Self::kind(m, a), Self::kind(m, b));
+                self.may_touch(m, state, contacts, pair) || self.may_be_near(m, state, contacts, pair) != is_near
+            };
+            if let Ok(Some(found)) = nearest(bodies, &skip)
+                && found.distance < margin_m - ROUNDING_M
+            {
+                return Err(Self::blame(m, bodies, &found));
+            }
+        }
+        Ok(())
     }
 
     fn is_floor(&self, body: usize) -> bool {
@@ -147,7 +215,11 @@ impl<M: Manipulator> Validity<Tabletop<M>> for SceneOracle {
         let skip = |a, b| self.may_touch(m, state, contacts, (Self::kind(m, a), Self::kind(m, b)));
         let place = [state.robot.base[0], state.robot.base[1], 0.0];
         match intersections(&bodies, &skip) {
-            Ok(found) => found.first().map_or(Ok(()), |found| Err(Self::blame(m, &bodies, found))),
+            Ok(found) => match found.first() {
+                Some(found) => Err(Self::blame(m, &bodies, found)),
+                None if self.asks_margins => self.margins(m, state, contacts, &bodies),
+                None => Ok(()),
+            },
             Err(error) => Err(Blame {
                 kind: BlockKind::Other,
                 first: error.to_string().into(),

@@ -282,9 +282,13 @@ fn everyday_problems_are_valid_and_say_what_they_are_about() {
         let problem = problem(name);
         assert_eq!(problem.name, name);
         assert!(problem.title.contains(": ") && problem.description.len() > 80, "{name}");
-        let (masses, frictions) = (problem.objects.iter().map(|o| o.mass_kg), problem.objects.iter().map(|o| &o.friction));
+        let (masses, frictions) =
+            (problem.objects.iter().map(|o| o.mass_kg), problem.objects.iter().map(|o| &o.friction));
         assert!(masses.into_iter().all(|kg| (0.05..=5.0).contains(&kg)), "{name}");
-        assert!(frictions.into_iter().all(|f| (0.05..=1.0).contains(&f.table) && (0.01..=1.0).contains(&f.fingers)), "{name}");
+        assert!(
+            frictions.into_iter().all(|f| (0.05..=1.0).contains(&f.table) && (0.01..=1.0).contains(&f.fingers)),
+            "{name}"
+        );
     }
 }
 

@@ -6,7 +6,6 @@ use super::{Judge, Trial};
 use crate::verify::mode::Mode;
 use crate::verify::motion::{Segment, State};
 use crate::verify::refusal::{Refusal, RefusalKind, Site};
-use crate::verify::stage::Hit;
 
 impl<'a> Judge<'a> {
     pub(super) fn world_from_tool(&self) -> Isometry3<f64> {
@@ -66,6 +65,11 @@ impl<'a> Judge<'a> {
         let site = trial.site;
         if let (Some(core), Some(object)) = (&trial.core, trial.act.pushed) {
             let tips = core.check_depth(site, time, &self.robot, &self.stage, object)?;
+            if time <= 0.0 {
+                let nearest_m = tips.iter().flatten().map(|tip| tip.distance).fold(f64::INFINITY, f64::min);
+                let name = self.world.object_name(object);
+                self.remarks.note_standoff(site.step, name, nearest_m - self.options.push_contact_m);
+            }
             self.check_on_surface(site, time, object, now)?;
             if let Some(way) = way {
                 core.check_contact(site, time, &self.robot, &self.stage, object, tips, &way, self.options)?;
@@ -74,6 +78,9 @@ impl<'a> Judge<'a> {
         if let Some(holding) = trial.act.holding {
             self.check_object_bounds(holding.object, now)
                 .map_err(|text| site.refusal(time, RefusalKind::Bounds, text))?;
+            if let Some(pose) = now.objects.get(holding.object) {
+                self.remarks.note_lean(pose);
+            }
             self.check_tilt(holding.object, now).map_err(|text| {
                 site.refusal(time, RefusalKind::Tilt, text)
                     .about(self.world.object_name(holding.object), "the vertical")
@@ -87,8 +94,8 @@ impl<'a> Judge<'a> {
             self.check_line(site, time, start, end)?;
         }
         self.stage.check(site.step, time).map_err(|hit| {
-            let Hit { names: (a, b), place } = hit;
-            site.refusal(time, RefusalKind::Collision, format!("{a} and {b} collide")).about(&a, &b).at(&place)
+            let (a, b) = &hit.names;
+            site.refusal(time, RefusalKind::Collision, hit.words()).about(a, b).at(&hit.place)
         })
     }
 
