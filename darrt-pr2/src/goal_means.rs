@@ -4,10 +4,13 @@
 //! Only what is certain counts: an object rests until it is picked, a push leaves it on its surface or on one that lies flush
 //! with it, and only Place lets go of it.
 
+use darrt_primitives::push::Friction;
+use darrt_primitives::push::steady::SlidingDisc;
+
 use crate::grasp_families::why_none_holds;
 use crate::planning_error::PlanningError;
 use crate::problem_file::{GoalState, GoalTarget, Object, ObjectGoal, PrimitiveName, ProblemFile};
-use crate::robot::{Gripper, PAYLOAD_KG};
+use crate::robot::{Gripper, PAYLOAD_KG, PUSH_FORCE_N};
 
 /// Checks that for every object some goal may hold at the start, or that it can be moved as that goal needs.
 ///
@@ -52,7 +55,8 @@ impl<'a> Means<'a> {
             .and_then(holds);
         let place = pick.clone().and(allowed(PrimitiveName::Place, "`Place` is not among the primitives"));
         let push = allowed(PrimitiveName::Push, "`Push` is not among the primitives")
-            .and(fit(object.pushable(), "it is not `pushable`"));
+            .and(fit(object.pushable(), "it is not `pushable`"))
+            .and_then(|()| steady(problem, object));
         Self { object, pick, place, push }
     }
 
@@ -89,6 +93,17 @@ impl<'a> Means<'a> {
         };
         beside[0].hypot(beside[1]) <= goal.tolerance_m
     }
+}
+
+/// Whether two fingers push the object: why not, with the numbers.
+fn steady(problem: &ProblemFile, object: &Object) -> Result<(), String> {
+    let friction = |value| Friction::new(value).map_err(|error| error.to_string());
+    let Some(radius_m) = object.shape.round_radius() else { return Ok(()) };
+    let (table, fingers) = (friction(object.friction.table)?, friction(object.friction.fingers)?);
+    let disc = SlidingDisc { radius_m, mass_kg: object.mass_kg, table, fingers };
+    let gap_m = disc.finger_gap_m(problem.push.gap_m);
+    let push = disc.steady_push(gap_m, problem.push.position_error_m, PUSH_FORCE_N);
+    push.map(|_| ()).map_err(|why| why.to_string())
 }
 
 #[cfg(test)]
@@ -176,6 +191,15 @@ mod tests {
         });
         assert!(
             still.unwrap().ends_with("wants it to move, but it has no `grasps` for Pick, and it is not `pushable`")
+        );
+        let heavy = said(|p| {
+            here(p);
+            p.objects[0].mass_kg = 50.0;
+        });
+        let heavy = heavy.unwrap();
+        assert!(
+            heavy.ends_with("a push needs 147.2 N, with reserve 220.7 N, and the arm pushes with 30.0 N"),
+            "{heavy}"
         );
         let there_already = said(|p| {
             here(p);

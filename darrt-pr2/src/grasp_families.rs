@@ -9,7 +9,10 @@ use darrt_primitives::grasp::side::SideGrasps;
 use darrt_primitives::grasp::{Grasp, GraspFamily as Family, Grip};
 use darrt_primitives::manipulator::Hand;
 
-use crate::problem_file::{GraspFamily, Object, PlateRim, RimGrasp, ShapeSpec};
+use crate::problem_file::{GraspFamily, LengthRange, Object, PlateRim, RimGrasp, ShapeSpec};
+
+/// How far above what an object stands on the fingertips of a grasp from above stay, metres.
+const ABOVE_SUPPORT: f64 = 0.005;
 
 /// A family of grasps that does not fit its object.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -121,12 +124,14 @@ pub fn lift_m(object: &Object) -> [f64; 2] {
 }
 
 fn one(family: GraspFamily, object: &Object, hand: &dyn Hand) -> Result<Box<dyn Family>, PrimitiveError> {
-    let grip = |open_gap: f64, closed_gap: f64, approach: f64| Grip {
-        open_gap,
-        tip_ahead: hand.tip_beyond_tool_m(closed_gap),
-        approach,
-        pad_length: hand.pad_length_m(),
-        pad_width: 2.0 * hand.tip_half_width_m(),
+    let grip = |open_gap: f64, closed_gap: f64, approach: LengthRange| -> Result<Grip, PrimitiveError> {
+        Ok(Grip {
+            open_gap,
+            tip_ahead: hand.tip_beyond_tool_m(closed_gap),
+            approach: approach.planned()?,
+            pad_length: hand.pad_length_m(),
+            pad_width: 2.0 * hand.tip_half_width_m(),
+        })
     };
     let missing = |kind: &str| {
         let fit = match family {
@@ -149,32 +154,33 @@ fn one(family: GraspFamily, object: &Object, hand: &dyn Hand) -> Result<Box<dyn 
             }
             let tilts = radians(&object.rim_tilts_deg());
             let options = RimOptions { insertion: insertion_m, tilts, grid_azimuths: azimuths };
-            Box::new(RimGrasps::new(rim, grip(opening_m, thickness, approach_m), options)?)
+            Box::new(RimGrasps::new(rim, grip(opening_m, thickness, approach_m)?, options)?)
         }
         (GraspFamily::Overhead, ShapeSpec::Bowl { radius, height, wall }) => {
             let over = &object.overhead;
             let max_lean = over.tilts_deg.iter().fold(0.0_f64, |most, t| most.max(t.abs())).to_radians();
             let options = WallOptions {
-                depth: over.insertion_m,
+                depth: depth_from_above(over.insertion_m, *height)?,
                 max_lean,
                 grid_leans: radians(&over.tilts_deg),
                 grid_azimuths: over.azimuths,
                 ..WallOptions::default()
             };
-            let grip = grip(over.opening_m, *wall, over.approach_m);
+            let grip = grip(over.opening_m, *wall, over.approach_m)?;
             Box::new(WallGrasps::new(*radius, *height, *wall, grip, options)?)
         }
         (GraspFamily::Overhead, shape) => {
             let over = &object.overhead;
             let (footprint, height, width) = outline(shape).ok_or_else(|| missing(shape.kind()))?;
-            let grip = grip(over.opening_m, width, over.approach_m);
-            let grasps = OverheadGrasps::new(footprint, height, over.insertion_m, grip)?;
+            let grip = grip(over.opening_m, width, over.approach_m)?;
+            let depth = depth_from_above(over.insertion_m, height)?;
+            let grasps = OverheadGrasps::new(footprint, height, depth, grip)?;
             Box::new(grasps.with_round_ends(round_end(shape)))
         }
         (GraspFamily::Side, shape) => {
             let side = &object.side;
             let (footprint, height, width) = outline(shape).ok_or_else(|| missing(shape.kind()))?;
-            let grip = grip(side.opening_m, width, side.approach_m);
+            let grip = grip(side.opening_m, width, side.approach_m)?;
             Box::new(SideGrasps::new(footprint, height, side.insertion_m, 0.0, grip)?.with_round_ends(round_end(shape)))
         }
     })
@@ -199,6 +205,15 @@ fn round_end(shape: &ShapeSpec) -> f64 {
         ShapeSpec::Capsule { radius, .. } => radius,
         _ => 0.0,
     }
+}
+
+/// How far fingertips reach below the top of an object `height` metres high: as far as wanted, or as the object is high.
+fn depth_from_above(insertion: LengthRange, height: f64) -> Result<f64, PrimitiveError> {
+    let most = height - ABOVE_SUPPORT;
+    if insertion.least_m <= most {
+        return Ok(insertion.wanted_m.min(most));
+    }
+    Err(PrimitiveError::OutOfRange { name: "fingertip insertion", value: insertion.least_m, low: 0.0, high: most })
 }
 
 /// Outline, height and least width of a shape that fingers can close around.
@@ -231,6 +246,14 @@ mod tests {
     }
 
     #[test]
+    fn fingertips_reach_no_deeper_than_an_object_is_high() {
+        let deep = |height| depth_from_above(LengthRange::new(0.01, 0.03), height);
+        assert_eq!(deep(0.1), Ok(0.03));
+        assert!((deep(0.03).unwrap() - 0.025).abs() < 1e-12);
+        assert!(deep(0.014).is_err());
+    }
+
+    #[test]
     fn flaws_name_family_and_key_in_the_units_of_the_file() {
         assert_eq!(
             said("plate1", |o| o.rim.opening_m = 0.02),
@@ -249,7 +272,12 @@ mod tests {
             said("bowl", |o| o.overhead.tilts_deg = vec![0.0, 70.0]),
             "`overhead.tilts_deg`: largest lean must lie in [0, 60], found 70"
         );
-        assert!(said("bowl", |o| o.overhead.approach_m = 0.0).starts_with("`overhead.approach_m`: "));
+        let none = LengthRange::new(0.0, 0.0);
+        assert!(said("bowl", |o| o.overhead.approach_m = none).starts_with("`overhead.approach_m`: "));
+        assert_eq!(
+            said("bowl", |o| o.overhead.insertion_m = LengthRange::new(0.07, 0.1)),
+            "`overhead.insertion_m`: fingertip insertion must lie in [0, 0.06], found 0.07"
+        );
         let sphere = said("plate1", |o| {
             o.grasps = vec![GraspFamily::Side];
             o.shape = ShapeSpec::Sphere { radius: 0.03 };

@@ -6,7 +6,7 @@
 //! | from where does the arm reach a pose? | [`reachability`] |
 //! | how does it plan? | [`robot`], [`world`] (with the private `supports`), [`planning`] |
 //! | the primitives of paper section 5.1 | [`arm_transit`], [`straight_line_arm_transit`], [`arm_rigid_transfer`], [`base_transit`], [`base_rigid_transfer`], [`pick`](mod@pick), [`place`](mod@place), [`push`](mod@push) |
-//! | what is a problem? | [`problem_file`], [`mod@generate`], [`grasp_families`], [`goal_means`], [`goal_check`] |
+//! | what is a problem? | [`problem_file`], [`mod@generate`], [`grasp_families`], [`goal_means`], [`goal_check`], [`goal_edges`] |
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
 //! | how well does it plan? | [`mod@bench`], [`stopwatch`] |
 //! | how are files read, written and described? | [`text_file`], [`schema`] |
@@ -24,6 +24,7 @@ mod file_kind;
 pub mod forward;
 pub mod generate;
 pub mod goal_check;
+pub mod goal_edges;
 pub mod goal_means;
 pub mod grasp_families;
 pub mod gripper;

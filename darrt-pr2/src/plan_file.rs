@@ -69,7 +69,7 @@ pub struct PlanFile {
 /// One primitive action.
 ///
 /// Between two waypoints base and joints move linearly, yaw and continuous joints the shorter way; what is held is
-/// rigid to the tool frame; a pushed object moves linearly. Either the base moves in a step, or the arm, never both.
+/// rigid to the tool frame; a pushed object moves linearly, or along the arc with which it turns. Either the base moves in a step, or the arm, never both.
 /// The gripper opens or closes only between the first two or the last two waypoints of a step, while all else stands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -23,6 +23,9 @@ pub enum PlanningError {
     /// A number, the start or the goal, as the planner sees it.
     #[error(transparent)]
     Core(#[from] darrt_core::error::Error),
+    /// A setting of the primitives.
+    #[error(transparent)]
+    Primitive(#[from] darrt_primitives::error::PrimitiveError),
     /// The plan file.
     #[error(transparent)]
     PlanFile(#[from] PlanFileError),

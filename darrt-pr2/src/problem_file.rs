@@ -13,6 +13,7 @@ pub mod geometry;
 pub mod goal;
 pub mod grasps;
 pub mod layout;
+pub mod length_range;
 pub mod nesting;
 pub mod object;
 pub(crate) mod paths;
@@ -32,6 +33,7 @@ pub use builtin::{builtin, builtin_names, builtin_text, everyday_names, further_
 pub use error::ProblemFileError;
 pub use goal::{Goal, GoalState, GoalTarget, ObjectGoal, Region};
 pub use grasps::{GraspFamily, OverheadGrasp, RimGrasp, SideGrasp};
+pub use length_range::LengthRange;
 pub use object::{Friction, Object, Symmetry};
 pub use primitive_name::PrimitiveName;
 pub use robot::{ArmSide, Limits, Robot, RobotModel};

@@ -27,6 +27,9 @@ const DRAWN_REACH: f64 = 0.78;
 const DRAWN_PAN: [f64; 2] = [-1.4, 0.45];
 /// The heaviest object that an arm carries, kilograms (Willow Garage, PR2 hardware specifications).
 pub const PAYLOAD_KG: f64 = 1.8;
+/// The largest force with which the hand pushes sideways, newton: the 30 N m that every joint of shoulder and elbow gives,
+/// over a stretched arm of 1 m. The wrist's 10 N m reach 50 N at the fingertips.
+pub const PUSH_FORCE_N: f64 = 30.0;
 /// Speeds of the arm's joints, radians per second: the caps with which `MoveIt` plans for the PR2, which are below those of its
 /// description.
 const JOINT_SPEED_RAD_PER_S: [f64; 7] = [1.0, 1.0, 1.5, 1.5, 1.5, 1.5, 1.12];
@@ -334,6 +337,10 @@ impl Manipulator for Pr2 {
 
     fn payload_kg(&self) -> f64 {
         PAYLOAD_KG
+    }
+
+    fn push_force_n(&self) -> f64 {
+        PUSH_FORCE_N
     }
 
     fn joint_weights_m(&self) -> &[f64] {

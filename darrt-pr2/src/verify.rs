@@ -16,11 +16,13 @@
 //! | is an object gripped, or pushed as pushes go? | `hand` |
 //! | over which of the surfaces that lie flush is an object? | `flush` |
 //! | does the grip bear the weight, also as the object leans? | `hold`, `surface` |
+//! | is it left far enough from an edge? | `edge` |
 //! | does the plan start and end where it must? | `start`, `goal` |
 //!
 //! `docs/plan-format.md` states the rules for readers of plans.
 
 mod approach;
+mod edge;
 mod flush;
 mod goal;
 mod hand;

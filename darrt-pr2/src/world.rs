@@ -7,6 +7,7 @@ use darrt_core::primitive::Primitive;
 use darrt_core::state::{ObjectId, State};
 use darrt_geom::scene::Scene;
 use darrt_primitives::arm_space::ArmSpace;
+use darrt_primitives::contact::MAX_LEAN;
 use darrt_primitives::goal::{Grip, ObjectGoal, TabletopGoal, Whereabouts};
 use darrt_primitives::manipulator::{Configuration, Manipulator};
 use darrt_primitives::mode::Mode;
@@ -84,7 +85,7 @@ pub fn build_with(problem: &ProblemFile, change: impl FnOnce(Pr2) -> Pr2) -> Res
         .iter()
         .zip(&geometry.objects)
         .enumerate()
-        .map(|(index, (object, solid))| movable(problem, (index, object), solid, &supports, &robot))
+        .map(|(index, (object, solid))| movable(problem, (index, object), solid, (&geometry, &supports), &robot))
         .collect::<Result<Vec<_>, _>>()?;
 
     let mut settings = settings(problem, robot.arm().side)?;
@@ -168,7 +169,7 @@ fn movable(
     problem: &ProblemFile,
     (index, object): (usize, &file::Object),
     solid: &file::geometry::StartingObject,
-    supports: &Supports,
+    (geometry, supports): (&Geometry, &Supports),
     robot: &Pr2,
 ) -> Result<(ObjectSpace, Movable), PlanningError> {
     let reach_m = solid.body.parts.iter().fold(0.0_f64, |most, part| {
@@ -185,6 +186,7 @@ fn movable(
         half_height_m: solid.depth_below_origin,
         surfaces: supports.surfaces_of(index).cloned().collect(),
         surface_share: SURFACE_SHARE,
+        edge_margin_m: problem.safety.edge_margin_m,
     })?;
     let rim = RimReach { insertion: object.rim.insertion_m, clearance: RIM_CLEARANCE, ..RimReach::default() };
     let named = |flaw| PlanningError::Grasp { object: object.name.clone(), index, flaw };
@@ -201,6 +203,7 @@ fn movable(
         mass_kg: object.mass_kg,
         friction: ObjectFriction { table: object.friction.table, fingers: object.friction.fingers },
         max_tilt_rad: object.max_tilt_deg().to_radians(),
+        brinks: crate::goal_edges::brinks(problem, index, solid.depth_below_origin, geometry, supports),
     };
     Ok((space, movable))
 }
@@ -212,8 +215,11 @@ fn settings(problem: &ProblemFile, side: Side) -> Result<ActionSettings<ArmConfi
         push: PushSettings {
             gap_m: push.gap_m,
             fingertip_clearance_m: push.fingertip_clearance_m,
-            standoff_m: push.standoff_m,
-            approach_m: push.approach_m,
+            leans_rad: push.leans_deg.iter().map(|lean| lean.to_radians().min(MAX_LEAN)).collect(),
+            standoff_m: push.standoff_m.planned()?,
+            approach_m: push.approach_m.planned()?,
+            position_error_m: push.position_error_m,
+            max_turn_rad: push.max_turn_deg.to_radians(),
             edge_rule: match push.edge_rule {
                 file::EdgeRule::NearestEdgePoint => EdgeRule::NearestEdgePoint,
                 file::EdgeRule::LineCrossing => EdgeRule::LineCrossing,
@@ -227,13 +233,12 @@ fn settings(problem: &ProblemFile, side: Side) -> Result<ActionSettings<ArmConfi
                 .iter()
                 .filter_map(|d| Vector3::from(*d).try_normalize(1e-9))
                 .collect(),
-            approach_m: problem.place.approach_m,
-            retreat_m: problem.place.retreat_m,
+            approach_m: problem.place.approach_m.planned()?,
+            retreat_m: problem.place.retreat_m.planned()?,
             release_opening_m: RELEASE_OPENING,
         },
         safety: problem.safety.settings(),
-        retreat_m: push.retreat_m,
-        least_line_share: 0.5,
+        retreat_m: push.retreat_m.planned()?,
         line_step_m: 0.05,
         drives: [problem.allows(PrimitiveName::BaseTransit), problem.allows(PrimitiveName::BaseRigidTransfer)],
         base_tries: 24,

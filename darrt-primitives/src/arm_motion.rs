@@ -1,5 +1,5 @@
 //! The one motion of this domain: base and arm through given configurations, straight in joint space between them,
-//! while an object is carried rigidly, pushed along a line, or left alone.
+//! while an object is carried rigidly, pushed along a line or an arc, or left alone.
 
 use std::fmt;
 
@@ -11,6 +11,7 @@ use nalgebra::Isometry3;
 
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Held, Mode};
+use crate::push::slide::Slide;
 use crate::tabletop::{Tabletop, TabletopState};
 use crate::way::Way;
 
@@ -21,7 +22,8 @@ pub enum Carried {
     Nothing,
     /// An object, rigid to the tool.
     Held(Held),
-    /// An object that slides from its start pose to this one, in a straight line without turning.
+    /// An object that slides from its start pose to this one: in a straight line, or along an arc if it is turned about the
+    /// vertical ([`Slide`]).
     Pushed(ObjectId, Isometry3<f64>),
 }
 
@@ -62,23 +64,24 @@ enum Load {
     Pushed(Box<Pushed>),
 }
 
-/// An object that slides in a straight line.
+/// An object that slides.
 struct Pushed {
     object: ObjectId,
-    to: Isometry3<f64>,
+    slide: Slide,
     /// How much of its way is done at every waypoint, the start first.
     shares: Box<[f64]>,
 }
 
 impl Load {
-    fn new<J>(carried: Carried, waypoints: &[Waypoint<J>], during: &Mode) -> Self {
+    fn new<J>(carried: Carried, objects: &[Isometry3<f64>], waypoints: &[Waypoint<J>], during: &Mode) -> Self {
         match carried {
             Carried::Nothing => Self::Nothing,
             Carried::Held(held) if during.held() == Some(&held) => Self::AsHeld,
             Carried::Held(held) => Self::Held(Box::new(held)),
             Carried::Pushed(object, to) => {
                 let shares = std::iter::once(0.0).chain(waypoints.iter().map(|w| w.pushed)).collect();
-                Self::Pushed(Box::new(Pushed { object, to, shares }))
+                let slide = Slide::new(objects.get(object.index()).copied().unwrap_or(to), to);
+                Self::Pushed(Box::new(Pushed { object, slide, shares }))
             }
         }
     }
@@ -95,7 +98,11 @@ impl<M: Manipulator> ArmMotion<M> {
         during: Mode,
         after: Mode,
     ) -> Self {
-        let reach_m = m.held_reach_m(&during);
+        let load = Load::new(carried, &start.objects, waypoints, &during);
+        let reach_m = match &load {
+            Load::Pushed(pushed) => pushed.reach_m(m, start),
+            _ => m.held_reach_m(&during),
+        };
         let mut knots = Vec::with_capacity(waypoints.len() + 1);
         let mut length_m = 0.0;
         let mut here = &start.robot;
@@ -112,7 +119,7 @@ impl<M: Manipulator> ArmMotion<M> {
             way: Way::new(start.robot, waypoints.iter().map(|w| w.robot)),
             objects: start.objects.as_slice().into(),
             knots: (knots != SINGLE_LEG).then(|| knots.into_boxed_slice()),
-            load: Load::new(carried, waypoints, &during),
+            load,
             before: start.mode.clone(),
             during,
             after,
@@ -136,7 +143,7 @@ impl<M: Manipulator> ArmMotion<M> {
             Load::Nothing => Carried::Nothing,
             Load::AsHeld => self.during.held().map_or(Carried::Nothing, |held| Carried::Held(*held)),
             Load::Held(held) => Carried::Held(**held),
-            Load::Pushed(pushed) => Carried::Pushed(pushed.object, pushed.to),
+            Load::Pushed(pushed) => Carried::Pushed(pushed.object, *pushed.slide.to()),
         }
     }
 
@@ -159,6 +166,16 @@ impl<M: Manipulator> ArmMotion<M> {
 }
 
 impl Pushed {
+    /// How far what turns with the hand reaches beyond the tool frame, metres: what goes straight goes as far as the hand.
+    fn reach_m<M: Manipulator>(&self, m: &Tabletop<M>, start: &TabletopState<M>) -> f64 {
+        if self.slide.turn() == 0.0 {
+            return 0.0;
+        }
+        let tool = m.manipulator().world_from_tool(&start.robot).translation.vector;
+        let gap_m = (self.slide.from().translation.vector - tool).norm();
+        gap_m + m.movable(self.object).map_or(0.0, |movable| movable.reach_m)
+    }
+
     fn share_at(&self, leg: Option<(usize, f64)>) -> f64 {
         let ends = leg.and_then(|(leg, s)| Some((self.shares.get(leg)?, self.shares.get(leg + 1)?, s)));
         ends.map_or_else(|| self.shares.last().copied().unwrap_or(0.0), |(a, b, s)| a + (b - a) * s)
@@ -191,8 +208,7 @@ impl<M: Manipulator> Motion<Tabletop<M>> for ArmMotion<M> {
             Load::Held(held) => Some(&**held),
             Load::Pushed(pushed) => {
                 if let Some(pose) = out.objects.get_mut(pushed.object.index()) {
-                    let from = pose.translation.vector;
-                    pose.translation.vector = from + (pushed.to.translation.vector - from) * pushed.share_at(leg);
+                    *pose = pushed.slide.at(pushed.share_at(leg));
                 }
                 None
             }

@@ -1,8 +1,9 @@
 //! Two-point contact between a hand and the rim of a round object.
 //!
-//! The hand points down with its two fingers side by side across the push, so that both fingertips
-//! touch the rim behind the centre. The only admissible push runs along the ray from the middle of
-//! the contact points through the centre of the object.
+//! The hand stands behind the object with its two fingers side by side across the push, so that both fingertips touch the
+//! rim behind the centre. It points straight down, or leans so that the fingertips go ahead of the wrist: that is how it
+//! comes under a shelf, and how it pushes what is tall. The push begins along the ray from the middle of the contact points
+//! through the centre of the object.
 //!
 //! The tool frame has x along the direction the hand points, y along the finger opening and z along
 //! the finger width; its origin lies midway between the fingers.
@@ -14,53 +15,55 @@ use nalgebra::{Isometry3, Matrix3, Point2, Point3, Rotation3, Unit, UnitQuaterni
 
 use crate::error::{PrimitiveError, finite, positive, positive_below, within};
 
-/// Half the fingertip width of a common parallel gripper, metres; the default of scenes that say nothing.
-pub const DEFAULT_HALF_TIP: f64 = 0.0112;
-
-/// Largest lean of a pushing hand from the vertical, radians (60 degrees).
-pub const MAX_LEAN: f64 = std::f64::consts::FRAC_PI_3;
+/// Largest lean of a pushing hand from the vertical, radians (75 degrees): nearer to level, fingers are wider than thin
+/// objects are high.
+pub const MAX_LEAN: f64 = 75.0 * std::f64::consts::PI / 180.0;
 
 /// Two fingers and the disc they push.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RimContact {
     radius: f64,
     gap: f64,
-    half_tip: f64,
+    tips: Fingertips,
+}
+
+/// The fingertips of a hand at some opening: boxes about the tool's axes. Metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fingertips {
+    /// How far they reach beyond the tool origin, at least 0.
+    pub beyond_tool: f64,
+    /// Half their width along the tool's z axis.
+    pub half_width: f64,
 }
 
 /// How the hand stands behind the disc.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HandStance {
-    /// Turned by 180 degrees about the vertical: the fingers change places.
+    /// Turned by 180 degrees about its own axis: the fingers change places.
     pub twin: bool,
-    /// Lean about the finger axis, radians in `[-MAX_LEAN, MAX_LEAN]`: positive tips the fingers
-    /// forward, so that the wrist trails behind the push.
+    /// Lean about the finger axis, radians in `[0, MAX_LEAN]`: the fingertips go ahead, the wrist trails behind the push.
     pub lean: f64,
-    /// How far below the tool origin the rim touches the fingers, metres (negative: above). Matters
-    /// only with a lean, which moves the fingertip faces forward by this times tan(lean).
-    pub contact_below_tool: f64,
 }
 
-impl Default for HandStance {
-    /// Straight down, fingers not swapped.
-    fn default() -> Self {
-        Self { twin: false, lean: 0.0, contact_below_tool: 0.0 }
-    }
+/// The heights at which a hand pushes, metres above what the disc slides on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PushHeights {
+    /// The lowest point of the fingertips.
+    pub tips: f64,
+    /// The upper edge of the disc; above [`Self::tips`].
+    pub top: f64,
 }
 
 impl RimContact {
-    /// A disc of `radius`, fingers `gap` apart, fingertips reaching `half_tip` ahead of the tool
-    /// origin along the push; all in metres.
+    /// A disc of `radius` metres, fingers `gap` metres apart with these `tips`.
     ///
     /// # Errors
-    /// When a length is not finite and positive, or `gap` is not below 2 `radius`.
-    pub fn new(radius: f64, gap: f64, half_tip: f64) -> Result<Self, PrimitiveError> {
+    /// When a length is not finite and positive (the tips may end with the tool), or `gap` is not below 2 `radius`.
+    pub fn new(radius: f64, gap: f64, tips: Fingertips) -> Result<Self, PrimitiveError> {
         let radius = positive("disc radius", radius)?;
-        Ok(Self {
-            radius,
-            gap: positive_below("finger gap", gap, 2.0 * radius)?,
-            half_tip: positive("half fingertip width", half_tip)?,
-        })
+        within("fingertip beyond the tool", tips.beyond_tool, 0.0, f64::MAX)?;
+        positive("half fingertip width", tips.half_width)?;
+        Ok(Self { radius, gap: positive_below("finger gap", gap, 2.0 * radius)?, tips })
     }
 
     /// Radius of the disc, metres.
@@ -84,14 +87,39 @@ impl RimContact {
         ((self.radius - half) * (self.radius + half)).sqrt()
     }
 
-    /// Distance of the tool origin behind the centre for an upright hand, metres.
-    pub fn setback(&self) -> f64 {
-        self.chord_distance() + self.half_tip
+    /// Distance of the tool origin behind the centre of the disc when both fingertips touch, metres.
+    ///
+    /// Of a fingertip that leans, the foremost point no higher than the disc touches: the front of its end if that is not
+    /// above the disc's upper edge, else the place of its end at that edge. What of the hand is wider than the tips is not
+    /// asked about.
+    ///
+    /// # Errors
+    /// When the lean is out of range, or the heights are not finite or not in order.
+    pub fn setback(&self, heights: &PushHeights, stance: &HandStance) -> Result<f64, PrimitiveError> {
+        let Fingertips { beyond_tool, half_width } = self.tips;
+        let lean = within("hand lean", stance.lean, 0.0, MAX_LEAN)?;
+        let top = finite("upper edge of the disc", heights.top)?;
+        let height = positive("height of the disc above the fingertips", top - finite("fingertips", heights.tips)?)?;
+        let (sin, cos) = lean.sin_cos();
+        // The end of the tip rises from its back corner to its front one.
+        let end_height = 2.0 * half_width * sin;
+        let share = if end_height <= height { 1.0 } else { height / end_height };
+        let foremost = beyond_tool * sin + half_width * cos * (2.0 * share - 1.0);
+        Ok(self.chord_distance() + foremost)
     }
 
-    /// Distance of the tool origin behind the centre for a hand in the given stance, metres.
-    pub fn setback_of(&self, stance: &HandStance) -> f64 {
-        self.chord_distance() + self.half_tip / stance.lean.cos() + stance.contact_below_tool * stance.lean.tan()
+    /// Height of the tool origin above what the disc slides on, metres.
+    pub fn tool_height(&self, heights: &PushHeights, stance: &HandStance) -> f64 {
+        let (sin, cos) = stance.lean.sin_cos();
+        heights.tips + self.tips.beyond_tool * cos + self.tips.half_width * sin
+    }
+
+    /// How much the fingertips press the disc down for each newton with which they push it ahead: 0 where the front of the
+    /// tips touches its side, the cotangent of the lean where their slanting ends touch its upper edge.
+    pub fn pressing_down(&self, heights: &PushHeights, stance: &HandStance) -> f64 {
+        let (sin, cos) = stance.lean.sin_cos();
+        let is_over_edge = 2.0 * self.tips.half_width * sin > heights.top - heights.tips;
+        if is_over_edge { cos / sin } else { 0.0 }
     }
 
     /// Left and right contact point on the rim for a push along `direction`.
@@ -101,60 +129,30 @@ impl RimContact {
         [middle + aside, middle - aside]
     }
 
-    /// Where an upright hand stands to push the disc at `center` along `direction`.
-    pub fn tool_position(&self, center: &Point2<f64>, direction: &Unit<Vector2<f64>>) -> Point2<f64> {
-        center - self.setback() * direction.into_inner()
-    }
-
-    /// Centre of the disc that an upright hand at `tool` touches with both fingers.
-    pub fn center_ahead_of(&self, tool: &Point2<f64>, direction: &Unit<Vector2<f64>>) -> Point2<f64> {
-        tool + self.setback() * direction.into_inner()
-    }
-
-    /// Do both fingertips of an upright hand at `tool` touch the rim of a disc at `center`?
-    ///
-    /// True when the front face of each fingertip is within `tolerance` metres of the rim and behind
-    /// the centre.
-    pub fn touches_rim(
-        &self,
-        tool: &Point2<f64>,
-        direction: &Unit<Vector2<f64>>,
-        center: &Point2<f64>,
-        tolerance: f64,
-    ) -> bool {
-        let front = tool + self.half_tip * direction.into_inner();
-        let aside = 0.5 * self.gap * left_of(direction);
-        [front + aside, front - aside].iter().all(|finger| {
-            let to_center = center - finger;
-            to_center.dot(direction) > 0.0 && (to_center.norm() - self.radius).abs() <= tolerance
-        })
-    }
-
-    /// Tool pose that pushes the disc at `center` along `direction` with the tool origin at
-    /// `tool_height` above the floor; world axes, metres.
+    /// Tool pose that pushes the disc at `center` along `direction`, on a surface `surface_height` above the floor; world
+    /// axes, metres.
     ///
     /// # Errors
-    /// When a coordinate or `tool_height` is not finite, or the stance is out of range.
+    /// When a number is not finite, or heights or stance are out of range.
     pub fn world_from_tool(
         &self,
         center: &Point2<f64>,
         direction: &Unit<Vector2<f64>>,
-        tool_height: f64,
+        surface_height: f64,
+        heights: &PushHeights,
         stance: &HandStance,
     ) -> Result<Isometry3<f64>, PrimitiveError> {
-        let height = finite("tool height", tool_height)?;
+        let surface = finite("surface height", surface_height)?;
         finite("disc centre x", center.x)?;
         finite("disc centre y", center.y)?;
-        within("hand lean", stance.lean, -MAX_LEAN, MAX_LEAN)?;
-        finite("contact below the tool", stance.contact_below_tool)?;
-        let at = center - self.setback_of(stance) * direction.into_inner();
-        let rotation = hand_down(direction, stance);
-        Ok(Isometry3::from_parts(Point3::new(at.x, at.y, height).coords.into(), rotation))
+        let at = center - self.setback(heights, stance)? * direction.into_inner();
+        let position = Point3::new(at.x, at.y, surface + self.tool_height(heights, stance));
+        Ok(Isometry3::from_parts(position.coords.into(), hand_behind(direction, stance)))
     }
 }
 
-/// Orientation of a hand that points down with its fingers across `direction`.
-fn hand_down(direction: &Unit<Vector2<f64>>, stance: &HandStance) -> UnitQuaternion<f64> {
+/// Orientation of a hand with its fingers across `direction`.
+fn hand_behind(direction: &Unit<Vector2<f64>>, stance: &HandStance) -> UnitQuaternion<f64> {
     let (sin, cos) = stance.lean.sin_cos();
     let ahead = Vector3::new(direction.x, direction.y, 0.0);
     let side = left_of(direction);

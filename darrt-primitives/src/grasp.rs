@@ -21,6 +21,7 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vect
 
 use self::hold::PadContact;
 use crate::error::{PrimitiveError, positive, positive_below, within};
+use crate::length_range::LengthRange;
 
 pub mod footprint;
 pub mod hold;
@@ -75,16 +76,16 @@ pub struct Grasp {
     pub open_gap_m: f64,
     /// Finger gap while holding, metres: the thickness of what is held.
     pub closed_gap_m: f64,
-    /// Length of the straight approach along the tool's x axis, metres.
-    pub approach_m: f64,
+    /// Length of the straight approach along the tool's x axis.
+    pub approach_m: LengthRange,
     /// What kind of grasp it is.
     pub kind: GraspKind,
 }
 
 impl Grasp {
-    /// Tool pose in the object frame where the straight approach begins.
+    /// Tool pose in the object frame where the straight approach begins if it is as long as wanted.
     pub fn object_from_pregrasp(&self) -> Isometry3<f64> {
-        self.object_from_tool * Translation3::new(-self.approach_m, 0.0, 0.0)
+        self.object_from_tool * Translation3::new(-self.approach_m.wanted_m(), 0.0, 0.0)
     }
 
     /// Tool pose in the world for an object at `world_from_object`.
@@ -158,8 +159,8 @@ pub struct Grip {
     pub open_gap: f64,
     /// How far the fingertips reach ahead of the tool origin while holding (default 0.018).
     pub tip_ahead: f64,
-    /// Length of the straight approach (default 0.10).
-    pub approach: f64,
+    /// Length of the straight approach (default 0.02 to 0.10).
+    pub approach: LengthRange,
     /// Length of a pad from the fingertip back (default 0.036).
     pub pad_length: f64,
     /// Width of a pad (default 0.0226).
@@ -167,9 +168,11 @@ pub struct Grip {
 }
 
 impl Default for Grip {
-    /// Open gap 0.05, fingertips 0.018 ahead of the tool, approach 0.10, pads 0.036 by 0.0226: a common parallel gripper.
+    /// Open gap 0.05, fingertips 0.018 ahead of the tool, approach 0.02 to 0.10, pads 0.036 by 0.0226: a common parallel
+    /// gripper.
     fn default() -> Self {
-        Self { open_gap: 0.05, tip_ahead: 0.018, approach: 0.10, pad_length: 0.036, pad_width: 0.0226 }
+        let approach = LengthRange::of_grasps();
+        Self { open_gap: 0.05, tip_ahead: 0.018, approach, pad_length: 0.036, pad_width: 0.0226 }
     }
 }
 
@@ -180,7 +183,7 @@ impl Grip {
     /// When a length is not positive (`tip_ahead` may be zero) or `thickness` not below the open gap.
     fn check(&self, thickness: f64) -> Result<(), PrimitiveError> {
         positive("open finger gap", self.open_gap)?;
-        positive("grasp approach", self.approach)?;
+        positive("grasp approach", self.approach.wanted_m())?;
         positive("pad length", self.pad_length)?;
         positive("pad width", self.pad_width)?;
         within("fingertip ahead of the tool", self.tip_ahead, 0.0, f64::MAX)?;
@@ -258,13 +261,13 @@ mod tests {
 
     fn check_law(grasp: &Grasp) {
         assert!(0.0 < grasp.closed_gap_m && grasp.closed_gap_m < grasp.open_gap_m);
-        assert!(grasp.approach_m > 0.0);
+        assert!(grasp.approach_m.wanted_m() > 0.0);
         let matrix = grasp.object_from_tool.to_homogeneous();
         assert!(matrix.iter().all(|x| x.is_finite()));
         let turn = grasp.object_from_tool.rotation.to_rotation_matrix();
         assert!((turn.matrix().determinant() - 1.0).abs() < 1e-12);
         let back = grasp.object_from_pregrasp().inverse() * grasp.object_from_tool;
-        let expected = Vector3::new(grasp.approach_m, 0.0, 0.0);
+        let expected = Vector3::new(grasp.approach_m.wanted_m(), 0.0, 0.0);
         assert!((back.translation.vector - expected).norm() < 1e-12);
     }
 
@@ -317,7 +320,7 @@ mod tests {
             let before = grasp.world_from_pregrasp(&world_from_object);
             let at = grasp.world_from_tool(&world_from_object);
             let ahead = at.translation.vector - before.translation.vector;
-            assert!((ahead - at.rotation * Vector3::x() * grasp.approach_m).norm() < 1e-12);
+            assert!((ahead - at.rotation * Vector3::x() * grasp.approach_m.wanted_m()).norm() < 1e-12);
             assert!(before.rotation.angle_to(&at.rotation) < 1e-7);
         }
     }
@@ -335,7 +338,7 @@ mod tests {
         let refused: [(Change, f64, &str); 8] = [
             (|g| g.open_gap = 0.0, 0.02, "open finger gap must be above 0, found 0"),
             (|g| g.open_gap = f64::INFINITY, 0.02, "open finger gap must be finite, found inf"),
-            (|g| g.approach = -0.1, 0.02, "grasp approach must be above 0, found -0.1"),
+            (|g| g.approach = LengthRange::new(0.0, 0.0).unwrap(), 0.02, "grasp approach must be above 0, found 0"),
             (|g| g.pad_length = 0.0, 0.02, "pad length must be above 0, found 0"),
             (|g| g.pad_width = f64::NAN, 0.02, "pad width must be finite, found NaN"),
             (|g| g.tip_ahead = f64::NAN, 0.02, "fingertip ahead of the tool must be finite, found NaN"),

@@ -5,10 +5,11 @@ use darrt_geom::body_set::{BodyIndex, BodySet};
 use nalgebra::Isometry3;
 
 use crate::manipulator::Manipulator;
+use crate::push::slide::Slide;
 use crate::surroundings::{Surroundings, Worker};
 use crate::tabletop::{Tabletop, TabletopState};
 
-/// One leg of a motion: everything moves in a straight line of its space.
+/// One leg of a motion: the robot moves in a straight line of its space, and what is pushed on an arc.
 #[derive(Debug)]
 pub(crate) struct Leg {
     /// Parameter at its beginning.
@@ -65,7 +66,7 @@ impl Leg {
                 *slot = travel / span;
                 fastest = fastest.max(*slot);
             } else {
-                *slot = (to.translation.vector - from.translation.vector).norm() / span;
+                *slot = slide_travel(around, *id, from, to) / span;
                 fastest = fastest.max(fastest_link + *slot);
             }
         }
@@ -84,6 +85,17 @@ impl Leg {
     pub(crate) fn watch(&self, around: &Surroundings, worker: &mut Worker) {
         around.watch(worker, (&self.moved, &self.against, &self.chain), (self.begin, self.end));
     }
+}
+
+/// Bound on the travel of a body that slides from one pose to another.
+fn slide_travel(around: &Surroundings, body: BodyIndex, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+    let slide = Slide::new(*from, *to);
+    let turned = match around.model().ball(body) {
+        _ if slide.turn() == 0.0 => 0.0,
+        Some((centre, radius)) => slide.turn().abs() * (centre.coords.norm() + radius),
+        None => f64::INFINITY,
+    };
+    slide.length_m() + turned
 }
 
 /// Bound on the travel of a body, now at `pose`, that turns about the axis of the base and drives with it.

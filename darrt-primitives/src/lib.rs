@@ -8,7 +8,9 @@
 //! | how do objects slide when pushed? | [`push`], [`contact`] |
 //! | how can an object be held? | [`grasp`] |
 //! | how far may what is held lean? | [`tilt`] |
+//! | how near to an edge may an object be left? | [`edge_margin`] |
 //! | how does a wish become motions? | [`action`], [`arm_motion`] |
+//! | how long are straight lines of the hand? | [`length_range`] |
 //! | who may touch whom, and what is too near? | [`surroundings`] |
 //! | what is in the way, and is there a way around? | [`validity`], [`detour`], [`base_path`] |
 //! | what is asked for, and what is a goal? | [`wish`], [`goal`] |
@@ -22,6 +24,7 @@ pub mod arm_space;
 pub mod base_path;
 pub mod contact;
 pub mod detour;
+pub mod edge_margin;
 pub mod error;
 pub mod execution_time;
 pub mod goal;
@@ -29,6 +32,7 @@ pub mod grasp;
 pub mod kinematics;
 pub mod laws;
 mod leg;
+pub mod length_range;
 pub mod manipulator;
 pub mod mode;
 pub mod object_space;

@@ -13,6 +13,9 @@ pub const OBJECT_TOLERANCE_M: f64 = 1e-3;
 /// Samples at an edge lie within this share of the way from there to where they would lie anywhere.
 const EDGE_SHARE: f64 = 0.2;
 
+/// Rounding that is forgiven in the distance from an edge, metres.
+const ROUNDING_M: f64 = 1e-9;
+
 /// Poses `world_from_object`. The object's frame is the centre of its shape, z up when it stands.
 ///
 /// A sample stands on an allowed surface with probability `surface_share`, else it floats upright in the box: poses
@@ -26,6 +29,7 @@ pub struct ObjectSpace {
     half_height_m: f64,
     surfaces: Vec<SupportSurface>,
     surface_share: f64,
+    edge_margin_m: f64,
 }
 
 /// The parts of an [`ObjectSpace`].
@@ -45,6 +49,8 @@ pub struct ObjectSpaceParts {
     pub surfaces: Vec<SupportSurface>,
     /// How often a sample stands on one of them, in `[0, 1]`.
     pub surface_share: f64,
+    /// How far inside the edge of a surface its samples are, metres, at least 0.
+    pub edge_margin_m: f64,
 }
 
 impl ObjectSpace {
@@ -53,7 +59,16 @@ impl ObjectSpace {
     /// # Errors
     /// [`Error::Parameter`] for a number outside its range.
     pub fn new(parts: ObjectSpaceParts) -> Result<Self, Error> {
-        let ObjectSpaceParts { lower, upper, is_round, metres_per_rad, half_height_m, surfaces, surface_share } = parts;
+        let ObjectSpaceParts {
+            lower,
+            upper,
+            is_round,
+            metres_per_rad,
+            half_height_m,
+            surfaces,
+            surface_share,
+            edge_margin_m,
+        } = parts;
         let positive =
             |name, value| darrt_core::error::in_range(name, value, f64::MIN_POSITIVE, f64::MAX, "finite and positive");
         Ok(Self {
@@ -63,6 +78,7 @@ impl ObjectSpace {
             half_height_m: positive("half_height_m", half_height_m)?,
             surfaces,
             surface_share: darrt_core::error::in_range("surface_share", surface_share, 0.0, 1.0, "in [0, 1]")?,
+            edge_margin_m: darrt_core::error::in_range("edge_margin_m", edge_margin_m, 0.0, f64::MAX, "at least 0")?,
         })
     }
 
@@ -93,9 +109,18 @@ impl ObjectSpace {
             left < 0.0
         })?;
         let mut at = surface.sample(rng, 0.0)?;
-        if place == Place::SupportEdge {
-            let edge = surface.nearest_edge_point(&at).point;
-            at = edge + (at - edge) * rng.random_range(0.0..EDGE_SHARE);
+        let edge = surface.nearest_edge_point(&at);
+        let spare_m = (edge.distance - self.edge_margin_m).max(0.0);
+        let inside_m = match place {
+            Place::SupportEdge => self.edge_margin_m + spare_m * rng.random_range(0.0..EDGE_SHARE),
+            _ => self.edge_margin_m + spare_m,
+        };
+        if inside_m != edge.distance {
+            at = edge.point - inside_m * edge.outward.into_inner();
+            // Not where another edge is too near: in a corner, or on a board that is narrower than two margins.
+            if surface.depth(&at) < self.edge_margin_m - ROUNDING_M {
+                return None;
+            }
         }
         let pose = self.standing(surface, &at, rng.random_range(-std::f64::consts::PI..std::f64::consts::PI));
         self.contains(&pose).then_some(pose)

@@ -12,6 +12,8 @@
 //! | what does one finger do to a disc? | [`one_point`] |
 //! | when do two fingers keep a disc fixed to the hand? | [`stable_two_point`] |
 //! | how does a misplaced disc settle between two fingers? | [`settling`] |
+//! | does a push hold: captured, stable, not too heavy, long enough? | [`steady`] |
+//! | which way does a pushed object go? | [`slide`] |
 //! | where does a push end when the target lies off the table? | [`edge_stop`] |
 
 use nalgebra::Vector2;
@@ -23,7 +25,9 @@ pub mod limit_surface;
 pub mod motion_cone;
 pub mod one_point;
 pub mod settling;
+pub mod slide;
 pub mod stable_two_point;
+pub mod steady;
 
 /// Standard gravity in m/s^2.
 pub const GRAVITY: f64 = 9.81;

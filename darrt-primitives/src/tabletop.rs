@@ -13,8 +13,10 @@ use nalgebra::{Isometry3, Point2, Vector3};
 use smallvec::SmallVec;
 
 use crate::arm_space::ArmSpace;
+use crate::edge_margin::Brink;
 use crate::grasp::hold::{Hold, Load, NoHold, hold};
 use crate::grasp::{Grasp, GraspFamily};
+use crate::length_range::LengthRange;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Held, Mode, SurfaceId};
 use crate::object_space::ObjectSpace;
@@ -47,6 +49,8 @@ pub struct Movable {
     pub friction: ObjectFriction,
     /// How far its z axis may lean from the vertical while it is carried, radians.
     pub max_tilt_rad: f64,
+    /// Where its goals want it nearer to an edge than objects are left elsewhere.
+    pub brinks: Vec<Brink>,
 }
 
 impl std::fmt::Debug for Movable {
@@ -75,16 +79,22 @@ pub struct Support {
 }
 
 /// Parameters of Push; metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PushSettings {
-    /// Gap between the fingers.
+    /// Gap between the fingers; less for an object that is too narrow for it.
     pub gap_m: f64,
     /// Height of the fingertips above the surface.
     pub fingertip_clearance_m: f64,
+    /// Leans of the hand from the vertical in the order in which they are tried, radians in `[0, MAX_LEAN]`.
+    pub leans_rad: Vec<f64>,
     /// How far behind the contact the hand comes down.
-    pub standoff_m: f64,
-    /// Length of the way down.
-    pub approach_m: f64,
+    pub standoff_m: LengthRange,
+    /// Length of the way down, along the hand.
+    pub approach_m: LengthRange,
+    /// How far to any side an object may be from where it is thought to be.
+    pub position_error_m: f64,
+    /// How far an object may turn on the arc of one push, radians in `[0, pi)`; 0 for straight pushes only.
+    pub max_turn_rad: f64,
     /// Where a push to a place off the support ends.
     pub edge_rule: EdgeRule,
     /// How far inside the edge the object's centre stops: least and most.
@@ -96,10 +106,10 @@ pub struct PushSettings {
 pub struct PlaceSettings {
     /// Directions of the last straight motion, unit vectors in the world, pointing down.
     pub approach_directions: Vec<Vector3<f64>>,
-    /// Length of that motion, metres.
-    pub approach_m: f64,
-    /// How far the hand then backs out in a straight line, metres.
-    pub retreat_m: f64,
+    /// Length of that motion.
+    pub approach_m: LengthRange,
+    /// How far the hand then backs out in a straight line.
+    pub retreat_m: LengthRange,
     /// How much farther than the held thickness the fingers open to let go, metres.
     pub release_opening_m: f64,
 }
@@ -146,10 +156,8 @@ pub struct ActionSettings<J> {
     pub place: PlaceSettings,
     /// Distances that plans keep.
     pub safety: SafetySettings,
-    /// How far a hand that stands at an object backs out in a straight line before it does anything else, metres.
-    pub retreat_m: f64,
-    /// Part of an approach or retreat that is enough when the arm reaches no farther, in `(0, 1]`.
-    pub least_line_share: f64,
+    /// How far a hand that stands at an object backs out in a straight line before it does anything else.
+    pub retreat_m: LengthRange,
     /// The longest distance between inverse-kinematics solutions along a straight line of the hand, metres.
     pub line_step_m: f64,
     /// May the base drive with an empty hand, and with an object in it?

@@ -4,7 +4,7 @@ use darrt_core::domain::Domain;
 use darrt_core::partial::PartialState;
 use darrt_core::space::GroupSet;
 use darrt_core::state::ObjectId;
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
 use crate::action::place::ON_SURFACE_M;
@@ -52,18 +52,21 @@ pub fn random_unmet_object<'a, M: Manipulator>(
     unmet_objects(m, from, to, test).nth(rng.random_range(0..count))
 }
 
-/// Does `object` rest, may it be pushed, and does the target ask for another place in the plane?
+/// Does `object` rest, may it be pushed, and does the target ask for another place in the plane? To a place that is not on
+/// its surface it is pushed only if that may help: what can be grasped wherever it stands is better picked up at once.
 pub fn asks_to_push<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
     object: ObjectId,
     target: &Isometry3<f64>,
 ) -> bool {
-    let rests = from.mode.support_of(object).is_some() && m.movable(object).is_some_and(|o| o.is_pushable);
+    let (Some(on), Some(movable)) = (from.mode.support_of(object), m.movable(object)) else { return false };
+    let is_there = || m.keeps_from_edge(object, on, &Point2::from(target.translation.vector.xy()));
+    let helps = || is_there() || movable.grasps.iter().all(|family| family.needs_overhang());
     let moves = from.object(object).is_some_and(|pose| {
         (pose.translation.vector.xy() - target.translation.vector.xy()).norm() > OBJECT_TOLERANCE_M
     });
-    rests && moves
+    movable.is_pushable && moves && helps()
 }
 
 /// Does `object` rest, and can it be grasped at all?
@@ -113,7 +116,7 @@ pub fn may_carry_along<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>,
     from.mode.held().is_some_and(|held| to.object(held.object).is_none()) && to.are_objects_met(m, from)
 }
 
-/// A random place on a surface on which `object` may stand.
+/// A random place on a surface on which `object` may stand, far enough from its edge to be left there.
 pub fn random_standing_pose<M: Manipulator>(
     m: &Tabletop<M>,
     object: ObjectId,
@@ -124,6 +127,6 @@ pub fn random_standing_pose<M: Manipulator>(
         return None;
     }
     let surface = m.surface(*allowed.get(rng.random_range(0..allowed.len()))?)?;
-    let at = surface.sample(rng, 0.0)?;
+    let at = surface.sample(rng, m.settings().safety.edge_margin_m)?;
     Some(m.objects().get(object.index())?.standing(surface, &at, rng.random_range(-3.0..3.0)))
 }

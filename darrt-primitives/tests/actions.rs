@@ -6,17 +6,23 @@ use darrt_core::motion::Instance;
 use darrt_core::primitive::{Infeasible, Instances};
 use darrt_core::random::{Purpose, Stream, stream};
 use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
+use darrt_primitives::action::line::{follow_in_room, room_for_hand};
+use darrt_primitives::action::stance::Refused;
 use darrt_primitives::action::transfer::{transfer, transfer_by_base};
 use darrt_primitives::action::{label, pick::pick, place::place, push::push};
+use darrt_primitives::edge_margin::Brink;
 use darrt_primitives::grasp::footprint::Footprint;
 use darrt_primitives::grasp::overhead::{OverheadGrasps, WallGrasps, WallOptions};
 use darrt_primitives::grasp::rim::{Rim, RimGrasps, RimOptions};
 use darrt_primitives::grasp::{GraspFamily, Grip};
-use darrt_primitives::manipulator::Manipulator;
+use darrt_primitives::length_range::LengthRange;
+use darrt_primitives::manipulator::{Configuration, Manipulator};
 use darrt_primitives::mode::{Contacts, SurfaceId, TouchReason};
 use darrt_primitives::object_space::upright;
+use darrt_primitives::push::Friction;
 use darrt_primitives::push::edge_stop::RimReach;
-use darrt_primitives::tabletop::Movable;
+use darrt_primitives::push::steady::SlidingDisc;
+use darrt_primitives::tabletop::{Movable, PushSettings};
 use darrt_primitives::testing::gantry::{Gantry, MAX_GAP_M, TIP_BEYOND_TOOL_M, motion};
 use darrt_primitives::testing::table::{Table, TableState, altered_table, honest_table, object, start};
 use darrt_primitives::wish::asks_to_push;
@@ -112,6 +118,125 @@ fn a_push_off_the_table_stops_at_all_the_distances_that_are_asked_for() {
     let least = depths.iter().copied().fold(f64::INFINITY, f64::min);
     let most = depths.iter().copied().fold(0.0, f64::max);
     assert!(most - least > 0.01, "{depths:?}");
+}
+
+#[test]
+fn what_would_not_stay_at_the_fingers_or_is_too_heavy_is_not_pushed() {
+    type Change = fn(&mut Movable, &mut PushSettings);
+    let changes: [(Change, Option<Infeasible>); 3] = [
+        (|_, _| (), None),
+        // The fingers are 40 mm apart.
+        (|_, push| push.position_error_m = 0.021, Some(Infeasible::UnstablePush)),
+        (|tin, _| tin.mass_kg = 0.0, Some(Infeasible::UnstablePush)),
+    ];
+    for (change, refusal) in changes {
+        let m = altered_table(Gantry::new().unwrap(), |objects, s| change(&mut objects[0].1, &mut s.push)).unwrap();
+        let from = start(&m);
+        let mut target = pose(&from, object(0));
+        target.translation.x += 0.1;
+        let act = |seed| push(&m, &from, object(0), &target, &mut stream(seed, 0, 0, Purpose::Extend)).err();
+        assert!((0..64).map(act).any(|found| found == refusal), "{refusal:?}");
+        assert!(refusal.is_none() || (0..64).map(act).all(|found| found == refusal), "{refusal:?}");
+    }
+}
+
+/// A push that is cut short settles what the place of the object may be off; one whose end is near is as short as that.
+#[test]
+fn pushes_are_long_enough_to_settle_unless_their_end_is_near() {
+    let m = altered_table(Gantry::new().unwrap(), |_, s| s.push.position_error_m = 0.015).unwrap();
+    let from = start(&m);
+    let disc = SlidingDisc {
+        radius_m: 0.04,
+        mass_kg: 0.3,
+        table: Friction::new(0.3).unwrap(),
+        fingers: Friction::new(0.5).unwrap(),
+    };
+    let settle_m = disc.steady_push(0.04, 0.015, f64::INFINITY).unwrap().settle_m;
+    assert!((0.05..0.1).contains(&settle_m), "{settle_m}");
+    let mut cut = 0;
+    for seed in 0..64 {
+        // The blue tin is in the way, 0.28 m ahead of the place where the red one would touch it.
+        for ahead_m in [0.03, 0.3, 0.6] {
+            let mut target = pose(&from, object(0));
+            target.translation.vector +=
+                (pose(&from, object(1)).translation.vector - target.translation.vector).normalize() * ahead_m;
+            let wanted = (target.translation.vector - pose(&from, object(0)).translation.vector).xy();
+            let Ok(way) = push(&m, &from, object(0), &target, &mut stream(seed, 0, 0, Purpose::Extend)) else {
+                continue;
+            };
+            let went_m = moved(&m, &from, &way).norm();
+            assert!(went_m >= settle_m.min(wanted.norm()) - 1e-9, "{went_m} of {wanted}");
+            cut += u32::from(went_m < wanted.norm() - 1e-3);
+        }
+    }
+    assert!(cut > 3, "{cut}");
+}
+
+#[test]
+fn nothing_is_left_nearer_to_an_edge_than_it_may() {
+    let id = object(0);
+    let m = honest_table().unwrap();
+    let surface = m.surface(SurfaceId::new(0)).unwrap();
+    let (from, here) = (lifted(&m, id), start(&m));
+    let at = |x: f64| upright(Vector3::new(x, 0.1, 0.74), 0.0);
+    // The left edge of the table is at x = -0.9, the margin is 0.02.
+    for (x, may) in [(-0.879, true), (-0.881, false)] {
+        let placed = (0..32).any(|seed| place(&m, &from, &at(x), &mut stream(seed, 0, 0, Purpose::Extend)).is_ok());
+        assert_eq!(placed, may, "{x}");
+    }
+    assert_eq!(place(&m, &from, &at(-0.89), &mut stream(0, 0, 0, Purpose::Extend)).err(), Some(Infeasible::OffSupport));
+    for seed in 0..32 {
+        let Ok(way) = push(&m, &here, id, &at(-0.89), &mut stream(seed, 0, 0, Purpose::Extend)) else { continue };
+        let end = pose(&end(&m, &here, &way), id).translation;
+        assert!(surface.depth(&Point2::new(end.x, end.y)) >= 0.02 - 1e-9);
+    }
+    // A goal on the brink forces it.
+    let brink = Brink {
+        surface: SurfaceId::new(0),
+        min: Point2::new(-0.89, 0.1),
+        max: Point2::new(-0.89, 0.1),
+        margin_m: 0.01,
+    };
+    let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].1.brinks = vec![brink]).unwrap();
+    let (from, here) = (lifted(&m, id), start(&m));
+    let placed = first(|rng| place(&m, &from, &at(-0.89), rng));
+    assert_at(&pose(&end(&m, &from, &placed), id), &at(-0.89), true);
+    let pushed = first(|rng| push(&m, &here, id, &at(-0.89), rng));
+    assert!((pose(&end(&m, &here, &pushed), id).translation.x + 0.89).abs() < 1e-9);
+    assert_eq!(
+        place(&m, &from, &at(-0.885), &mut stream(0, 0, 0, Purpose::Extend)).err(),
+        Some(Infeasible::OffSupport)
+    );
+}
+
+/// A board 4 cm above what is set down, lifted or pushed: lines of the hand get as short as the room is.
+#[test]
+fn lines_of_the_hand_fit_the_room() {
+    let m = honest_table().unwrap();
+    let from = start(&m);
+    let line = |range: LengthRange| {
+        // With all the room that is wanted, up to 0.03 m; with what is needed, up to 0.04 m.
+        let clear = |at: &Isometry3<f64>, care| at.translation.z <= if care > 0 { 0.03 } else { 0.04 };
+        room_for_hand(&m, range, &Isometry3::identity(), &Vector3::z(), clear)
+    };
+    let range = |least_m, wanted_m| LengthRange::new(least_m, wanted_m).unwrap();
+    assert_eq!(line(range(0.02, 0.1)).map(LengthRange::wanted_m), Ok(0.025));
+    assert_eq!(line(range(0.02, 0.03)).map(LengthRange::wanted_m), Ok(0.03));
+    assert_eq!(line(range(0.035, 0.1)).map(LengthRange::wanted_m), Ok(0.035));
+    assert_eq!(line(range(0.05, 0.1)), Err(Isometry3::translation(0.0, 0.0, 0.05)));
+    // The arm follows as far as it reaches, which may not be far enough.
+    let tool = m.manipulator().world_from_tool(&from.robot);
+    let follow = |range, check: &dyn Fn(f64) -> bool| {
+        let refuse = |q: &Configuration<_>| {
+            let up = m.manipulator().world_from_tool(q).translation.z - tool.translation.z;
+            if check(up) { Ok(()) } else { Err(Refused::Unreachable) }
+        };
+        follow_in_room(&m, &from.robot, &tool, &Vector3::z(), range, refuse).map(|line| line.reached_m())
+    };
+    assert!(matches!(follow(range(0.01, 0.08), &|_| true), Ok(up) if (up - 0.08).abs() < 1e-9));
+    assert!(matches!(follow(range(0.01, 0.08), &|up| up < 0.05), Ok(up) if (up - 0.04).abs() < 1e-9));
+    assert!(follow(range(0.06, 0.08), &|up| up < 0.05).is_err());
+    assert!(follow(range(3.0, 4.0), &|_| true).is_err());
 }
 
 #[test]
@@ -302,7 +427,8 @@ fn grasped_by(grasps: impl GraspFamily + 'static) -> Table {
 }
 
 fn grip(open_gap: f64) -> Grip {
-    Grip { open_gap, tip_ahead: TIP_BEYOND_TOOL_M, approach: 0.1, ..Grip::default() }
+    let approach = LengthRange::new(0.05, 0.1).unwrap();
+    Grip { open_gap, tip_ahead: TIP_BEYOND_TOOL_M, approach, ..Grip::default() }
 }
 
 #[test]

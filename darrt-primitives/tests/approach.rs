@@ -9,6 +9,7 @@ use darrt_primitives::action::approach::{NO_WAY_M, to_grasp_m, to_push_m};
 use darrt_primitives::action::{label, pick::pick, push::push};
 use darrt_primitives::grasp::Grip;
 use darrt_primitives::grasp::rim::{Rim, RimGrasps, RimOptions};
+use darrt_primitives::length_range::LengthRange;
 use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::push::edge_stop::EdgeRule;
 use darrt_primitives::testing::gantry::{Gantry, TIP_BEYOND_TOOL_M};
@@ -59,6 +60,24 @@ fn to_a_push_on_the_table_it_is_the_way_to_the_contact() {
     assert!((left - right).abs() > 0.01, "the contact lies behind the tin: {left} {right}");
 }
 
+/// A hand that leans stands farther back and lower: whichever lean is chosen, the bound is no more than the way to it.
+#[test]
+fn to_a_push_it_is_no_more_than_the_way_to_any_lean() {
+    let from = start(&honest_table().unwrap());
+    let leaning = |leans: &[f64]| {
+        let leans_rad = leans.to_vec();
+        altered_table(Gantry::new().unwrap(), |_, settings| settings.push.leans_rad = leans_rad).unwrap()
+    };
+    for at in [[-0.5, -0.3], [-0.7, -0.4], [-0.6, -0.1]] {
+        let (upright_m, _) = pushes(&leaning(&[0.0]), &from, at);
+        let (bound_m, gaps) = pushes(&leaning(&[0.6]), &from, at);
+        assert!(gaps.iter().all(|gap| (gap - bound_m).abs() < 1e-8), "{at:?}: {bound_m} {gaps:?}");
+        assert!((bound_m - upright_m).abs() > 1e-3, "{bound_m} {upright_m}");
+        let any_m = to_push_m(&leaning(&[0.6, 0.0]), &from, object(0), &target(&from, at));
+        assert_eq!(any_m, bound_m.min(upright_m));
+    }
+}
+
 #[test]
 fn to_a_push_over_the_edge_it_is_the_way_to_the_nearest_contact_that_may_be_chosen() {
     let m = honest_table().unwrap();
@@ -90,7 +109,8 @@ fn to_a_grasp_it_is_no_more_than_the_way_to_any() {
 
 #[test]
 fn there_is_no_way_to_what_can_be_neither_pushed_nor_grasped() {
-    let grip = Grip { open_gap: 0.09, tip_ahead: TIP_BEYOND_TOOL_M, approach: 0.1, ..Grip::default() };
+    let approach = LengthRange::new(0.05, 0.1).unwrap();
+    let grip = Grip { open_gap: 0.09, tip_ahead: TIP_BEYOND_TOOL_M, approach, ..Grip::default() };
     let rim = RimGrasps::new(
         Rim::level(0.04, 0.02, 0.04).unwrap(),
         grip,

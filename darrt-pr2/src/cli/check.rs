@@ -6,6 +6,7 @@ use super::args::CheckOptions;
 use super::exit::{Exit, Failure};
 use super::output::Output;
 use super::steps;
+use crate::goal_edges;
 use crate::picture::Story;
 use crate::plan_file::PlanFile;
 use crate::problem_file::{PrimitiveName, builtin};
@@ -42,6 +43,7 @@ pub(super) fn run(options: &CheckOptions, output: &mut Output) -> Result<Exit, F
         let verdict = if is_refused { "right, but not accepted" } else { "accepted" };
         let warnings = proof.warnings.iter().map(|warning| format!("\nwarning:  {warning}"));
         output.print(&format!("{name}: {verdict}\n{}{}", words(&proof), warnings.collect::<String>()))?;
+        notices(&plan, output)?;
     }
     if is_refused {
         let count = counted(proof.warnings.len() as u64, "warning");
@@ -111,6 +113,12 @@ pub(super) fn words(proof: &Proof) -> String {
         }
     }
     text
+}
+
+/// What a person should know besides.
+pub(super) fn notices(plan: &PlanFile, output: &mut Output) -> Result<(), Failure> {
+    let lines = goal_edges::notices(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
+    lines.iter().try_for_each(|line| output.print(&format!("notice:   {line}")))
 }
 
 fn clearance(kind: &str, smallest: &SmallestClearance) -> String {

@@ -45,6 +45,7 @@ pub(super) fn run(options: &PlanOptions, output: &mut Output) -> Result<Exit, Fa
         if !proof.warnings.is_empty() {
             output.print(&safety::notices(&proof.warnings))?;
         }
+        check::notices(plan, output)?;
         output.print(&files.words())?;
     }
     Ok(Exit::Solved)

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::exit::Failure;
-use crate::problem_file::{ProblemFile, Safety};
+use crate::problem_file::{LengthRange, ProblemFile, Safety};
 use crate::verify::Warning;
 
 /// Of the warnings about a plan so many are printed with it.
@@ -28,7 +28,7 @@ pub struct SafetyOptions {
     /// How far inside the edges of surfaces objects are set down and pushed
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     pub edge_margin: Option<f64>,
-    /// How far behind an object the hand comes down to push it
+    /// How far behind an object the hand comes down to push it; half of it will do
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     pub standoff: Option<f64>,
     /// How far any object may lean while it is carried
@@ -50,10 +50,12 @@ impl SafetyOptions {
             (&mut safety.least_margin_m, self.least_margin),
             (&mut safety.contact_margin_m, self.contact_margin),
             (&mut safety.edge_margin_m, self.edge_margin),
-            (&mut problem.push.standoff_m, self.standoff),
         ];
         for (slot, value) in changes {
             *slot = value.unwrap_or(*slot);
+        }
+        if let Some(wanted_m) = self.standoff {
+            problem.push.standoff_m = LengthRange::wanted(wanted_m);
         }
         if self.max_tilt.is_some() {
             problem.objects.iter_mut().for_each(|object| object.max_tilt_deg = self.max_tilt);

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::length_range::LengthRange;
+
 /// A family of grasps that Pick may draw from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -31,14 +33,21 @@ pub struct RimGrasp {
     /// Gap between the open fingers while approaching (m).
     pub opening_m: f64,
     /// Length of the straight approach along the hand (m).
-    pub approach_m: f64,
+    pub approach_m: LengthRange,
     /// Length of the straight lift (m).
     pub lift_m: f64,
 }
 
 impl Default for RimGrasp {
     fn default() -> Self {
-        Self { tilts_deg: None, azimuths: 24, insertion_m: 0.04, opening_m: 0.06, approach_m: 0.10, lift_m: 0.12 }
+        Self {
+            tilts_deg: None,
+            azimuths: 24,
+            insertion_m: 0.04,
+            opening_m: 0.06,
+            approach_m: LengthRange::new(0.05, 0.10),
+            lift_m: 0.12,
+        }
     }
 }
 
@@ -50,19 +59,26 @@ pub struct OverheadGrasp {
     pub tilts_deg: Vec<f64>,
     /// How many directions around the object's axis, evenly spaced.
     pub azimuths: u32,
-    /// How far the fingertips reach below the top of the object (m).
-    pub insertion_m: f64,
+    /// How far the fingertips reach below the top of the object (m); less where it is too low for it.
+    pub insertion_m: LengthRange,
     /// Gap between the open fingers while approaching (m).
     pub opening_m: f64,
     /// Length of the straight approach along the hand (m).
-    pub approach_m: f64,
+    pub approach_m: LengthRange,
     /// Length of the straight lift (m).
     pub lift_m: f64,
 }
 
 impl Default for OverheadGrasp {
     fn default() -> Self {
-        Self { tilts_deg: vec![0.0], azimuths: 24, insertion_m: 0.03, opening_m: 0.05, approach_m: 0.10, lift_m: 0.10 }
+        Self {
+            tilts_deg: vec![0.0],
+            azimuths: 24,
+            insertion_m: LengthRange::new(0.01, 0.03),
+            opening_m: 0.05,
+            approach_m: LengthRange::new(0.04, 0.10),
+            lift_m: 0.10,
+        }
     }
 }
 
@@ -79,13 +95,20 @@ pub struct SideGrasp {
     /// Gap between the open fingers while approaching (m).
     pub opening_m: f64,
     /// Length of the straight approach along the hand (m).
-    pub approach_m: f64,
+    pub approach_m: LengthRange,
     /// Length of the straight lift (m).
     pub lift_m: f64,
 }
 
 impl Default for SideGrasp {
     fn default() -> Self {
-        Self { tilts_deg: vec![0.0], azimuths: 24, insertion_m: 0.01, opening_m: 0.088, approach_m: 0.10, lift_m: 0.10 }
+        Self {
+            tilts_deg: vec![0.0],
+            azimuths: 24,
+            insertion_m: 0.01,
+            opening_m: 0.088,
+            approach_m: LengthRange::new(0.06, 0.10),
+            lift_m: 0.10,
+        }
     }
 }

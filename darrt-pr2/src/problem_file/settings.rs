@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::length_range::LengthRange;
+
 /// Where a push toward a place beyond the edge of the surface ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -16,21 +18,28 @@ pub enum EdgeRule {
 
 /// `[push]`: parameters of the primitive Push, metres.
 ///
-/// The hand points straight down, its fingers are open across the direction of the push and touch the object at two
-/// points.
+/// The fingers are open across the direction of the push and touch the object at two points behind its centre. A push is
+/// long enough for both to touch wherever the object is within `position_error_m`, unless its end is nearer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Push {
-    /// Gap between the two fingers, 0 to 0.09.
+    /// Gap between the two fingers, 0 to 0.09; less where an object is too narrow for it.
     pub gap_m: f64,
     /// Height of the fingertips above the surface.
     pub fingertip_clearance_m: f64,
-    /// How far behind the contact the hand comes down.
-    pub standoff_m: f64,
+    /// Leans of the hand from the vertical, degrees, 0 to 75: the fingertips ahead, the wrist trailing. Tried in this order.
+    pub leans_deg: Vec<f64>,
+    /// How far behind the contact the hand comes down; at least the position error, or it may come down on the object.
+    pub standoff_m: LengthRange,
     /// Length of the straight way down before the push.
-    pub approach_m: f64,
-    /// Length of the straight way up after the push.
-    pub retreat_m: f64,
+    pub approach_m: LengthRange,
+    /// Length of the straight way back along the hand from an object, before the hand does anything else.
+    pub retreat_m: LengthRange,
+    /// How far to any side an object may be from where it is thought to be.
+    pub position_error_m: f64,
+    /// How far an object may turn in one push, degrees, 0 to 120: where a straight push is blocked the hand pushes along an
+    /// arc, as sharp as the fingers hold the object. 0: straight pushes only, as in the paper.
+    pub max_turn_deg: f64,
     /// Where a push toward a place beyond the edge ends.
     pub edge_rule: EdgeRule,
     /// How far inside the edge the centre of the object may stop, `[least, most]`.
@@ -40,11 +49,14 @@ pub struct Push {
 impl Default for Push {
     fn default() -> Self {
         Self {
-            gap_m: 0.08,
+            gap_m: 0.088,
             fingertip_clearance_m: 0.005,
-            standoff_m: 0.01,
-            approach_m: 0.10,
-            retreat_m: 0.10,
+            leans_deg: vec![0.0, 35.0, 60.0],
+            standoff_m: LengthRange::new(0.03, 0.05),
+            approach_m: LengthRange::new(0.02, 0.10),
+            retreat_m: LengthRange::new(0.03, 0.10),
+            position_error_m: 0.01,
+            max_turn_deg: 60.0,
             edge_rule: EdgeRule::NearestEdgePoint,
             edge_distance_m: [0.03, 0.08],
         }
@@ -58,14 +70,18 @@ pub struct Place {
     /// Directions of the last straight motion in the world frame; each has a downward part, the length is ignored.
     pub approach_directions: Vec<[f64; 3]>,
     /// Length of the last straight motion (m).
-    pub approach_m: f64,
+    pub approach_m: LengthRange,
     /// Length of the straight way of the empty hand back along itself (m).
-    pub retreat_m: f64,
+    pub retreat_m: LengthRange,
 }
 
 impl Default for Place {
     fn default() -> Self {
-        Self { approach_directions: vec![[0.0, 0.0, -1.0]], approach_m: 0.10, retreat_m: 0.10 }
+        Self {
+            approach_directions: vec![[0.0, 0.0, -1.0]],
+            approach_m: LengthRange::new(0.02, 0.10),
+            retreat_m: LengthRange::new(0.03, 0.10),
+        }
     }
 }
 

@@ -95,10 +95,11 @@ impl Approach {
     }
 
     /// Bounds for one segment. `extents`: see [`Robot::extents`].
-    pub(super) fn speeds(&self, segment: &Segment<'_>, extents: &[f64], pushed: Option<usize>) -> Speeds {
-        let way = |object: usize| {
-            let (from, to) = (segment.from.objects.get(object)?, segment.to.objects.get(object)?);
-            Some((to.translation.vector - from.translation.vector).norm())
+    /// Of a pushed object also how far it reaches from its centre, metres.
+    pub(super) fn speeds(&self, segment: &Segment<'_>, extents: &[f64], pushed: Option<(usize, f64)>) -> Speeds {
+        let way = |(object, reach_m): (usize, f64)| {
+            let slide = segment.slide(object)?;
+            Some(slide.length_m + slide.turn.abs() * reach_m)
         };
         let [x, y, yaw] = segment.base;
         let reach = |link: usize| extents.get(link).copied().unwrap_or(f64::INFINITY);

@@ -11,6 +11,13 @@ use super::robot::Robot;
 use super::solid::{Placed, Solid, exact, lower_bound};
 use super::stage::Stage;
 use crate::problem_file::{Object, ShapeSpec};
+use crate::robot::PUSH_FORCE_N;
+
+/// What rounding may do to a curvature, 1/m.
+const CURVATURE_ROUNDING: f64 = 1e-6;
+
+/// Standard gravity.
+const GRAVITY_M_S2: f64 = 9.81;
 
 /// Half the thickness of the sheet between the fingers that must meet a held object, metres.
 const SHEET_M: f64 = 5e-4;
@@ -60,11 +67,23 @@ pub(super) fn check_grip(
     Err(refuse(format!("{} is not between the fingers", solid.name())))
 }
 
+/// How a pushed object moves at one moment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Way {
+    /// Unit vector: where its centre goes.
+    pub(super) heading: Vector2<f64>,
+    /// How far it turns for each metre, 1/m, at least 0.
+    pub(super) curvature: f64,
+}
+
 /// A pushed object without its outermost skin: what a pushing finger must not reach.
 #[derive(Debug)]
 pub(super) struct PushCore {
     core: Solid,
     name: String,
+    radius_m: f64,
+    /// With the fingers.
+    friction: f64,
 }
 
 impl PushCore {
@@ -73,6 +92,12 @@ impl PushCore {
         let name = object.name.clone();
         if !object.pushable() {
             return Err(format!("`{name}` may not be pushed"));
+        }
+        let needed_n = object.friction.table * object.mass_kg * GRAVITY_M_S2;
+        if needed_n > PUSH_FORCE_N {
+            return Err(format!(
+                "`{name}` is too heavy to be pushed: {needed_n:.1} N against its friction, the arm has {PUSH_FORCE_N} N"
+            ));
         }
         let core = match object.shape {
             ShapeSpec::Cylinder { radius, height }
@@ -83,7 +108,9 @@ impl PushCore {
             _ => return Err(format!("`{name}` is not round and cannot be pushed")),
         };
         let core = core.and_then(|shape| Solid::new(&Arc::from(name.as_str()), shape));
-        Ok(Self { core: core.map_err(|error| error.to_string())?, name })
+        let radius_m = object.shape.round_radius().unwrap_or(0.0);
+        let friction = object.friction.fingers;
+        Ok(Self { core: core.map_err(|error| error.to_string())?, name, radius_m, friction })
     }
 
     /// No finger reaches deeper into the object than its skin. The nearest points of each fingertip and the core, left and
@@ -135,12 +162,12 @@ impl PushCore {
         stage: &Stage,
         object: usize,
         tips: [Option<Clearance>; 2],
-        way: &Vector2<f64>,
+        way: &Way,
         options: &VerifyOptions,
     ) -> Result<(), Refusal> {
         let (_, pose) = stage.object(object);
         let centre = Point2::from(pose.translation.vector.xy());
-        let direction = way.normalize();
+        let direction = way.heading;
         let [_, _, left, right] = robot.fingers;
         let mut contacts = Vec::new();
         for (tip, nearest) in [left, right].into_iter().zip(tips) {
@@ -173,6 +200,24 @@ impl PushCore {
             );
             return Err(refuse(text));
         }
+        let most = self.most_curvature(a.angle(&b) / 2.0);
+        if way.curvature > most + CURVATURE_ROUNDING {
+            let (name, curvature) = (&self.name, way.curvature);
+            let text = format!("{name} turns by {curvature:.3} rad per metre, two fingers hold it up to {most:.3}");
+            return Err(refuse(text));
+        }
         Ok(())
+    }
+
+    /// The largest curvature at which contacts at this angle on either side of the way keep the object, 1/m: the force line
+    /// may pass R sin(beta) beside the centre, or R sin(alpha) cos(alpha) / cos(beta) if the angle of friction alpha is the
+    /// smaller one, and a disc that rests on its rim, which resists turning most, turns by that over R squared per metre.
+    ///
+    /// # Source
+    /// Lynch and Mason, Stable pushing: mechanics, controllability and planning, 1996.
+    fn most_curvature(&self, beta: f64) -> f64 {
+        let alpha = self.friction.atan();
+        let offset = if alpha < beta { alpha.sin() * alpha.cos() / beta.cos() } else { beta.sin() };
+        offset / self.radius_m
     }
 }

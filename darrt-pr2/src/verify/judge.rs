@@ -7,11 +7,12 @@ mod moment;
 mod remarks;
 
 use darrt_core::budget::Cancel;
-use nalgebra::{Isometry3, Vector2};
+use nalgebra::{Isometry3, UnitQuaternion};
 
 use super::approach::{Approach, Movers};
+use super::edge;
 use super::goal;
-use super::hand::{PushCore, check_grip};
+use super::hand::{PushCore, Way, check_grip};
 use super::hold::{Hold, check_hold};
 use super::margins::{MarginKind, Margins};
 use super::mode::{Act, Mode, Permits};
@@ -25,9 +26,6 @@ use super::{Proof, near, start};
 use crate::plan_file::{PlanFile, Step, Waypoint};
 use crate::problem_file::PrimitiveName;
 use remarks::Remarks;
-
-/// A pushed object that goes less than this in a segment stands still, metres.
-const STANDS_M: f64 = 1e-9;
 
 /// Everything needed while a plan is replayed.
 pub(super) struct Judge<'a> {
@@ -62,6 +60,8 @@ struct Trial<'a> {
     core: Option<PushCore>,
     /// The tool at both ends of a straight line.
     line: Option<[Isometry3<f64>; 2]>,
+    /// How the tool is turned against a pushed object before the push.
+    object_from_tool: Option<UnitQuaternion<f64>>,
 }
 
 impl Trial<'_> {
@@ -215,8 +215,11 @@ impl<'a> Judge<'a> {
             return Err(refusal.about(&near.names.0, &near.names.1).at(&near.place));
         }
         self.waypoints += step.waypoints.len();
-        let end = states.last().ok_or_else(|| site.refusal(0.0, RefusalKind::Malformed, "has no waypoints"))?.clone();
-        self.finish(&trial, &end)?;
+        let (Some(start), Some(end)) = (states.first(), states.last()) else {
+            return Err(site.refusal(0.0, RefusalKind::Malformed, "has no waypoints"));
+        };
+        let end = end.clone();
+        self.finish(&trial, start, &end)?;
         self.remark(&trial, &states);
         Ok(end)
     }
@@ -260,17 +263,26 @@ impl<'a> Judge<'a> {
             let end = tool(last);
             line = Some([tool(first), end]);
         }
+        let object_from_tool = match (states.first(), act.pushed) {
+            (Some(first), Some(object)) => {
+                self.robot.arm_link_poses(&first.joints, &mut self.links);
+                let tool = world_from_robot(&first.base) * self.links[self.robot.tool];
+                first.objects.get(object).map(|pose| pose.rotation.inverse() * tool.rotation)
+            }
+            _ => None,
+        };
         let extents = self.robot.extents(held_m);
         let rates = self.robot.travel_rates(&extents);
-        Ok(Trial { site, step, act, extents, rates, core, line })
+        Ok(Trial { site, step, act, extents, rates, core, line, object_from_tool })
     }
 
     fn segment(&mut self, trial: &Trial<'a>, place: Place, from: &State, to: &State) -> Result<(), Refusal> {
         let segment = Segment::new(from, to, &self.robot);
         self.check_changes(trial, place, &segment)?;
-        let way = trial.act.pushed.and_then(|object| pushed_way(&segment, object));
+        let slide = trial.act.pushed.and_then(|object| segment.slide(object));
         let (parts, travel_m) = segment.parts(&trial.rates, self.options);
-        let speeds = self.approach.speeds(&segment, &trial.extents, trial.act.pushed);
+        let pushed = trial.act.pushed.and_then(|object| Some((object, self.world.movables.get(object)?.solid.reach())));
+        let speeds = self.approach.speeds(&segment, &trial.extents, pushed);
         self.stage.set_speeds(&speeds, parts, trial.skips());
         let arm_moves = from.joints != to.joints;
         let turn_rad = segment.joints.iter().map(|joint| joint.abs()).sum();
@@ -293,7 +305,11 @@ impl<'a> Judge<'a> {
             if i == 0 || i == parts {
                 self.check_rigid(trial, time, &now, if i == 0 { from } else { to })?;
             }
+            if i == parts && slide.is_some() {
+                self.check_turned_along(trial, time, &now)?;
+            }
             self.stage.place(&self.world_from_robot, &self.links, &now.objects, gone);
+            let way = slide.map(|slide| Way { heading: slide.heading(s), curvature: slide.curvature() });
             self.check_state(trial, time, &now, way)?;
             // OPTIMIZATION: states at which nothing would be looked at need not be made. The end always is.
             let next = (i + 1 + self.idle_parts(trial, &now, (travel_m, turn_rad), parts)).min(parts.max(i + 1));
@@ -315,12 +331,16 @@ impl<'a> Judge<'a> {
     }
 
     /// What the step leaves behind.
-    fn finish(&mut self, trial: &Trial<'a>, end: &State) -> Result<(), Refusal> {
+    fn finish(&mut self, trial: &Trial<'a>, start: &State, end: &State) -> Result<(), Refusal> {
         if let Some(object) = trial.act.pushed
             && let (Some(Mode::Resting { surface }), Some(pose)) = (self.modes.get_mut(object), end.objects.get(object))
-            && let Some(now) = self.world.under(object, *surface, &pose.translation.vector.xy().into())
+            && start.objects.get(object) != Some(pose)
         {
-            *surface = now;
+            if let Some(now) = self.world.under(object, *surface, &pose.translation.vector.xy().into()) {
+                *surface = now;
+            }
+            let surface = *surface;
+            self.check_edge(trial.site, object, surface, pose)?;
         }
         let Some(holding) = trial.act.holding else { return Ok(()) };
         let mode = match (trial.site.primitive, &trial.step.holds) {
@@ -333,6 +353,7 @@ impl<'a> Judge<'a> {
                     trial.site.refusal(1.0, RefusalKind::Support, format!("{name} is let go, but {flaw}")).at(&place)
                 })?;
                 self.hold = None;
+                self.check_edge(trial.site, holding.object, surface, pose)?;
                 Mode::Resting { surface }
             }
             (_, Some(hold)) => Mode::Held { tool_from_object: hold.tool_from_object },
@@ -345,9 +366,15 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// The way of a pushed object over the surface; `None` while it stands.
-fn pushed_way(segment: &Segment<'_>, object: usize) -> Option<Vector2<f64>> {
-    let (from, to) = (segment.from.objects.get(object)?, segment.to.objects.get(object)?);
-    let way = to.translation.vector.xy() - from.translation.vector.xy();
-    (way.norm() > STANDS_M).then_some(way)
+impl Judge<'_> {
+    /// What is left standing is far enough from the edge.
+    fn check_edge(&self, site: Site, object: usize, surface: usize, pose: &Isometry3<f64>) -> Result<(), Refusal> {
+        let flaw = edge::flaw(&self.plan.problem, &self.world, object, surface, pose, self.options);
+        let refuse = |flaw: String| {
+            let plane = self.world.surface(surface).map_or("", |surface| surface.name());
+            let refusal = site.refusal(1.0, RefusalKind::Edge, flaw).about(self.world.object_name(object), plane);
+            Err(refusal.at(&pose.translation.vector.into()))
+        };
+        flaw.map_or(Ok(()), refuse)
+    }
 }

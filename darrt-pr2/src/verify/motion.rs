@@ -1,7 +1,7 @@
 //! States of a plan: reading waypoints, and what lies between two of them.
 
 use darrt_primitives::kinematics::limit::wrap_to_pi;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Rotation2, UnitQuaternion, Vector2, Vector3};
 
 use super::options::VerifyOptions;
 use super::robot::{Robot, Role};
@@ -85,6 +85,60 @@ pub(super) struct Changes {
     pub(super) parked: Option<usize>,
 }
 
+/// A pushed object that goes less than this in a segment stands still, metres.
+const STANDS_M: f64 = 1e-9;
+
+/// Turns that are smaller are what rounding does to a quaternion, radians.
+const TURN_ROUNDING: f64 = 1e-9;
+
+/// The way of a pushed object in a segment: along an arc of a circle, with which it turns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slide {
+    /// From its place at the beginning to that at the end.
+    chord: Vector2<f64>,
+    /// How far it turns about the vertical, counter-clockwise, radians.
+    pub(super) turn: f64,
+    /// The way of its centre, metres.
+    pub(super) length_m: f64,
+}
+
+impl Slide {
+    /// The direction in which its centre goes when `s` of the segment is done.
+    pub(super) fn heading(&self, s: f64) -> Vector2<f64> {
+        (Rotation2::new(self.turn * (s - 0.5)) * self.chord).normalize()
+    }
+
+    /// Turn per metre of its way, 1/m, at least 0; infinite if it turns where it stands.
+    pub(super) fn curvature(&self) -> f64 {
+        if self.turn == 0.0 { 0.0 } else { self.turn.abs() / self.length_m }
+    }
+}
+
+/// How far the second pose is turned about the vertical against the first, radians in `[-pi, pi]`.
+pub(super) fn turn_between(from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+    let ahead = from.rotation.inverse() * (to.rotation * Vector3::x());
+    let sideways = from.rotation.inverse() * (to.rotation * Vector3::y());
+    // The mean of both axes, so that a little lean does not count as a turn.
+    let turn = (ahead.y - sideways.x).atan2(ahead.x + sideways.y);
+    if turn.abs() < TURN_ROUNDING { 0.0 } else { turn }
+}
+
+/// Where the axis stands about which an object turns by `turn` on its way; `None` if it goes straight.
+fn axis_of(from: &Isometry3<f64>, to: &Isometry3<f64>, turn: f64) -> Option<Vector2<f64>> {
+    if turn == 0.0 {
+        return None;
+    }
+    let (a, b) = (from.translation.vector.xy(), to.translation.vector.xy());
+    let left = Vector2::new(a.y - b.y, b.x - a.x);
+    Some((a + b) / 2.0 + left / (2.0 * (turn / 2.0).tan()))
+}
+
+/// Length of an arc over a chord, metres.
+fn arc_m(chord_m: f64, turn: f64) -> f64 {
+    let half = (turn / 2.0).abs();
+    if half == 0.0 { chord_m } else { chord_m * half / half.sin() }
+}
+
 impl<'a> Segment<'a> {
     pub(super) fn new(from: &'a State, to: &'a State, robot: &Robot) -> Self {
         let [x, y, yaw] = [0, 1, 2].map(|i| to.base[i] - from.base[i]);
@@ -125,12 +179,13 @@ impl<'a> Segment<'a> {
     )]
     pub(super) fn parts(&self, rates: &[f64], options: &VerifyOptions) -> (usize, f64) {
         let [x, y, yaw] = self.base;
+        let slides = (0..self.from.objects.len()).filter_map(|object| self.slide(object));
+        let (pushed, turned) =
+            slides.fold((0.0_f64, 0.0_f64), |(way, turn), slide| (way.max(slide.length_m), turn.max(slide.turn.abs())));
         let turns = self.joints.iter().chain([&yaw]);
         let travel: f64 = turns.clone().zip(rates).map(|(turn, rate)| turn.abs() * rate).sum();
-        let pushed = self.from.objects.iter().zip(&self.to.objects);
-        let pushed = pushed.map(|(a, b)| (a.translation.vector - b.translation.vector).norm()).fold(0.0, f64::max);
         let travel = (travel + x.hypot(y)).max(pushed);
-        let by_turn = turns.map(|turn| turn.abs()).fold(0.0, f64::max) / options.joint_rad;
+        let by_turn = turns.map(|turn| turn.abs()).fold(turned, f64::max) / options.joint_rad;
         // Both are finite: coordinates are bounded and turns are wrapped or within limits.
         let count = (travel / options.travel_m).max(by_turn).ceil().clamp(1.0, 1e9);
         (count as usize, travel / count)
@@ -151,13 +206,31 @@ impl<'a> Segment<'a> {
         }
     }
 
-    /// The pose of an object that slides from one end to the other without turning.
+    /// The pose of an object that slides from one end to the other: in a straight line, or about the one vertical axis about
+    /// which it turns so far.
     pub(super) fn slid(&self, object: usize, s: f64) -> Option<Isometry3<f64>> {
         let (from, to) = (self.from.objects.get(object)?, self.to.objects.get(object)?);
         let mut pose = *to;
-        if s < 1.0 {
-            pose.translation.vector = from.translation.vector.lerp(&to.translation.vector, s);
+        if s >= 1.0 {
+            return Some(pose);
+        }
+        pose.translation.vector = from.translation.vector.lerp(&to.translation.vector, s);
+        let turn = turn_between(from, to);
+        if let Some(axis) = axis_of(from, to, turn) {
+            let part = Rotation2::new(turn * s);
+            let at = axis + part * (from.translation.vector.xy() - axis);
+            (pose.translation.x, pose.translation.y) = (at.x, at.y);
+            pose.rotation = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn * s) * from.rotation;
         }
         Some(pose)
+    }
+
+    /// The way of an object that slides from one end to the other; `None` while it stands.
+    pub(super) fn slide(&self, object: usize) -> Option<Slide> {
+        let (from, to) = (self.from.objects.get(object)?, self.to.objects.get(object)?);
+        let chord = to.translation.vector.xy() - from.translation.vector.xy();
+        let turn = turn_between(from, to);
+        let length_m = arc_m(chord.norm(), turn);
+        (length_m > STANDS_M || turn != 0.0).then_some(Slide { chord, turn, length_m })
     }
 }

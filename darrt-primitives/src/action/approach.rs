@@ -6,14 +6,13 @@ use std::f64::consts::{PI, TAU};
 
 use darrt_core::domain::Domain;
 use darrt_core::state::ObjectId;
-use darrt_geom::support::SupportSurface;
-use nalgebra::{Isometry3, Point2, Point3, Vector2};
+use nalgebra::{Isometry3, Point2, Point3, Rotation2, Vector2};
 
 use super::pick::overhangs;
-use crate::contact::RimContact;
+use super::push::Pushable;
 use crate::manipulator::Manipulator;
 use crate::push::edge_stop::EdgeRule;
-use crate::tabletop::{PushSettings, Tabletop, TabletopState};
+use crate::tabletop::{Tabletop, TabletopState};
 
 /// What stands for a way that there is not, metres: longer than any, and still a number that can be added.
 pub const NO_WAY_M: f64 = 1e9;
@@ -22,8 +21,8 @@ pub const NO_WAY_M: f64 = 1e9;
 const DEPTH_ROUNDING_M: f64 = 5e-10;
 
 /// Metres from the tool to the nearest contact from which [`push`](super::push::push) may bring `object` towards `target`:
-/// behind it, seen from there. Where the push ends at the edge, it may be any of an arc of contacts, and near a corner of
-/// the surface any on the rim. [`NO_WAY_M`] for what cannot be pushed.
+/// behind it, seen from there, with the hand leaning as it may. Where the push ends at the edge, it may be any of an arc of
+/// contacts, and near a corner of the surface any on the rim. [`NO_WAY_M`] for what cannot be pushed.
 ///
 /// # Laws
 /// At most the travel of every such push. The same for two targets above each other.
@@ -33,17 +32,15 @@ pub fn to_push_m<M: Manipulator>(
     object: ObjectId,
     target: &Isometry3<f64>,
 ) -> f64 {
-    let place = || {
-        let radius = m.movable(object).filter(|o| o.is_pushable)?.round_radius_m?;
-        let surface = from.mode.support_of(object).and_then(|s| m.surface(s))?;
-        let (settings, hand) = (&m.settings().push, m.manipulator().hand());
-        let contact = RimContact::new(radius, settings.gap_m, hand.tip_half_width_m()).ok()?;
-        let center = flat(from.object(object)?);
-        let height_m = surface.height() + settings.fingertip_clearance_m + hand.tip_beyond_tool_m(settings.gap_m);
-        let contacts = Contacts { center, setback_m: contact.setback(), height_m };
-        Some(contacts.distance_m(&tool(m, from), &ends(settings, surface, &flat(target))))
+    let Ok(pushable) = Pushable::new(m, from, object) else { return NO_WAY_M };
+    let ends = ends(m, &pushable, &flat(target));
+    let tool = tool(m, from);
+    let of_lean = |lean: &f64| {
+        let (setback_m, height_m) = pushable.tool_place(*lean)?;
+        Some(Contacts { center: pushable.center(), setback_m, height_m }.distance_m(&tool, &ends))
     };
-    place().unwrap_or(NO_WAY_M)
+    let leans = m.settings().push.leans_rad.iter();
+    leans.filter_map(of_lean).min_by(f64::total_cmp).unwrap_or(NO_WAY_M)
 }
 
 /// Metres from the tool to the nearest place from which `object` can be grasped as far as its families know
@@ -62,24 +59,32 @@ pub fn to_grasp_m<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>, obje
 
 /// Where the object may be when it has been pushed.
 enum Ends {
-    /// Somewhere on the segment, or on the way there.
-    Between(Point2<f64>, Point2<f64>),
+    /// Somewhere on the segment, or on the way there, which may be an arc: in a direction that differs by up to so many
+    /// radians from that of its end.
+    Between(Point2<f64>, Point2<f64>, f64),
     /// In any direction.
     Anywhere,
 }
 
 /// Where a push towards `target` may end.
-fn ends(settings: &PushSettings, surface: &SupportSurface, target: &Point2<f64>) -> Ends {
-    let [least, most] = settings.edge_distance_m;
-    if settings.edge_rule == EdgeRule::LineCrossing || surface.depth(target) >= least {
-        return Ends::Between(*target, *target);
+fn ends<M: Manipulator>(m: &Tabletop<M>, pushable: &Pushable<'_>, target: &Point2<f64>) -> Ends {
+    let settings = &m.settings().push;
+    let surface = pushable.surface;
+    let is_inside = surface.depth(target) >= m.edge_margin_m(pushable.object, pushable.on, target);
+    if settings.edge_rule == EdgeRule::LineCrossing || is_inside {
+        return between(m, pushable, *target, *target);
     }
-    let most = most.max(least);
+    let [least, most] = pushable.edge_distances_m(m);
     let edge = surface.nearest_edge_point(target);
     let [nearest, farthest] = [least, most].map(|inside| edge.point - inside * edge.outward.into_inner());
     // Where the farthest end is far enough from every other edge, the nearer ones are as well.
     let is_alone = surface.depth(&farthest) >= most - DEPTH_ROUNDING_M;
-    if is_alone { Ends::Between(nearest, farthest) } else { Ends::Anywhere }
+    if is_alone { between(m, pushable, nearest, farthest) } else { Ends::Anywhere }
+}
+
+fn between<M: Manipulator>(m: &Tabletop<M>, pushable: &Pushable<'_>, a: Point2<f64>, b: Point2<f64>) -> Ends {
+    let farthest_m = [a, b].map(|end| (end - pushable.center()).norm()).into_iter().fold(0.0, f64::max);
+    Ends::Between(a, b, pushable.most_half_turn(m, farthest_m))
 }
 
 /// The circle on which the tool stands to push an object.
@@ -96,22 +101,29 @@ impl Contacts {
         let to_circle_m = (aside.norm() - self.setback_m).abs();
         let across_m = match ends {
             Ends::Anywhere => to_circle_m,
-            Ends::Between(a, b) => self.to_arc_m(&aside, &(self.center - a), &(self.center - b)).unwrap_or(to_circle_m),
+            Ends::Between(a, b, beside) => {
+                self.to_arc_m(&aside, &(self.center - a), &(self.center - b), *beside).unwrap_or(to_circle_m)
+            }
         };
         across_m.hypot(tool.z - self.height_m)
     }
 
-    /// From `aside` of the centre to the arc between two directions, the shorter one; `None` where its middle part is
-    /// nearest, as on the whole circle, or where there is no direction.
-    fn to_arc_m(&self, aside: &Vector2<f64>, a: &Vector2<f64>, b: &Vector2<f64>) -> Option<f64> {
+    /// From `aside` of the centre to the arc between two directions, the shorter one, made longer by `beside` radians at both
+    /// ends; `None` where its middle part is nearest, as on the whole circle, or where there is no direction.
+    fn to_arc_m(&self, aside: &Vector2<f64>, a: &Vector2<f64>, b: &Vector2<f64>, beside: f64) -> Option<f64> {
         let angle = |v: &Vector2<f64>| v.y.atan2(v.x);
-        let (span, at) = (turned(angle(b) - angle(a)), turned(angle(aside) - angle(a)));
-        let is_between = at * span > 0.0 && at.abs() < span.abs();
+        let span = turned(angle(b) - angle(a));
+        // From the middle: the arc is as long to both sides.
+        let (middle, half) = (angle(a) + 0.5 * span, 0.5 * span.abs() + beside);
+        let is_between = half >= PI || (half > 0.0 && turned(angle(aside) - middle).abs() < half);
         if is_between {
             return None;
         }
-        let [a, b] = [a, b].map(|v| v.try_normalize(0.0).map(|v| (aside - v * self.setback_m).norm()));
-        Some(a?.min(b?))
+        let [a, b] = [a, b].map(|v| v.try_normalize(0.0));
+        let outwards = if span < 0.0 { -beside } else { beside };
+        let ends = [Rotation2::new(-outwards) * a?, Rotation2::new(outwards) * b?];
+        let [a, b] = ends.map(|v| (aside - v * self.setback_m).norm());
+        Some(a.min(b))
     }
 }
 

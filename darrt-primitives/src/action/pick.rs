@@ -6,10 +6,11 @@ use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
 use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
+use super::line::{self, follow_in_room, room_for_hand};
 use super::push::approach;
 use super::retreat::retreat;
 use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
-use super::{Chain, label, line};
+use super::{Chain, label};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::grasp::hold::Hold;
 use crate::grasp::rim::{rim_is_graspable, rim_overhangs};
@@ -78,6 +79,15 @@ pub fn pick<M: Manipulator>(
         }
         if care > 0 && !probe.is_hand_clear(&at_grasp, &open, care) {
             continue;
+        }
+        let (back, none) = (at_grasp.rotation * -Vector3::x(), Contacts::default());
+        let out = |at: &Isometry3<f64>, care| probe.is_hand_clear(at, &none, care);
+        match room_for_hand(m, grasp.approach_m, &at_grasp, &back, out) {
+            Ok(approach_m) => grasp.approach_m = approach_m,
+            Err(at) => {
+                why = probe.check_hand(&at, &none).err().map_or(why, Infeasible::Blocked);
+                continue;
+            }
         }
         fitted += 1;
         let picking = Picking { object, pose, grasp: &grasp, hold, at_grasp: &at_grasp };
@@ -153,12 +163,8 @@ fn way_of<M: Manipulator>(
     let Picking { object, grasp, at_grasp, .. } = *picking;
     let open = straddling(object, grasp);
     probe.check(q, &open, care)?;
-    let back = at_grasp.rotation * Vector3::new(-grasp.approach_m, 0.0, 0.0);
-    let out = line::follow(m, &q.base, &q.arm, at_grasp, &back);
-    if out.share() < m.settings().least_line_share {
-        return Err(Refused::Unreachable);
-    }
-    probe.check(&at_end(q.base, &out.arms)?, &Contacts::default(), care)?;
+    let (back, none) = (at_grasp.rotation * -Vector3::x(), Contacts::default());
+    let out = follow_in_room(m, q, at_grasp, &back, grasp.approach_m, |q| probe.check(q, &none, care))?;
     let [least, best] = movable.lift_m;
     let up = line::follow(m, &q.base, &q.arm, at_grasp, &(Vector3::z() * best));
     if up.share() * best < least {

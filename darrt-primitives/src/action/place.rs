@@ -4,14 +4,16 @@ use darrt_core::domain::Domain;
 use darrt_core::motion::Instance;
 use darrt_core::primitive::{Infeasible, Instances};
 use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
+use super::line::{follow_in_room, room_for_hand};
 use super::retreat::retreat;
-use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
+use super::stance::{Care, Probe, Refused, Wanted, stance};
 use super::travel::travel;
-use super::{Chain, label, line};
+use super::{Chain, label};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
+use crate::length_range::LengthRange;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Held, SurfaceId, TouchReason};
 use crate::object_space::upright;
@@ -33,7 +35,8 @@ struct Way<J> {
 ///
 /// # Errors
 /// [`Infeasible::NoGrasp`] if nothing is held, [`Infeasible::OffSupport`] if the target does not lie on a surface
-/// allowed for the object, [`Infeasible::Blocked`], [`Infeasible::Unreachable`].
+/// allowed for the object or is nearer to its edge than the object may be left
+/// ([`edge_margin_m`](Tabletop::edge_margin_m)), [`Infeasible::Blocked`], [`Infeasible::Unreachable`].
 pub fn place<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
@@ -42,6 +45,9 @@ pub fn place<M: Manipulator>(
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
     let held = *from.mode.held().ok_or(Infeasible::NoGrasp)?;
     let surface = m.surface_under(held.object, target, ON_SURFACE_M).ok_or(Infeasible::OffSupport)?;
+    if !m.keeps_from_edge(held.object, surface, &Point2::from(target.translation.vector.xy())) {
+        return Err(Infeasible::OffSupport);
+    }
     let directions = &m.settings().place.approach_directions;
     let down = match directions.len() {
         0 => -Vector3::z(),
@@ -69,12 +75,24 @@ pub fn place<M: Manipulator>(
             in_the_way = in_the_way.or_else(|| probe.check_hand(&at_place, &letting_go).err());
             continue;
         }
+        let none = Contacts::default();
+        let above = room_for_hand(m, m.settings().place.approach_m, &at_place, &-down, |at, care| {
+            before.place(held.object, &(at * held.tool_from_object));
+            before.is_hand_clear(at, &none, care)
+        });
+        let approach_m = match above {
+            Ok(approach_m) => approach_m,
+            Err(at) => {
+                in_the_way = in_the_way.or_else(|| before.check_hand(&at, &none).err());
+                continue;
+            }
+        };
         clear += 1;
         let tries = m.settings().base_tries.div_ceil(2);
         let wanted = Wanted { world_from_tool: &at_place, tries };
         let way = stance(m, from, &wanted, rng, |q, care| {
             after.check(q, &letting_go, care)?;
-            way_of(m, q, &at_place, &down, &mut before, care)
+            way_of(m, q, &at_place, &down, approach_m, &mut before, care)
         });
         match way {
             Ok(way) => return assemble(m, from, &held, surface, &way, rng),
@@ -119,14 +137,12 @@ fn way_of<M: Manipulator>(
     q: &Configuration<M::Joints>,
     at_place: &Isometry3<f64>,
     direction: &Vector3<f64>,
+    approach_m: LengthRange,
     before: &mut Probe<'_, M>,
     care: &mut Care,
 ) -> Result<Way<M::Joints>, Refused<M>> {
-    let out = line::follow(m, &q.base, &q.arm, at_place, &(-direction * m.settings().place.approach_m));
-    if out.share() < m.settings().least_line_share {
-        return Err(Refused::Unreachable);
-    }
-    before.check(&at_end(q.base, &out.arms)?, &Contacts::default(), care)?;
+    let none = Contacts::default();
+    let out = follow_in_room(m, q, at_place, &-direction, approach_m, |q| before.check(q, &none, care))?;
     let down = out.arms.iter().rev().copied().chain([q.arm]).collect();
     Ok(Way { base: q.base, down })
 }

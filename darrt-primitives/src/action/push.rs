@@ -1,24 +1,34 @@
-//! Pushing a round object along the ray through its centre.
+//! Pushing a round object along the ray through its centre, or on an arc that begins along it.
 
 use darrt_core::motion::Instance;
 use darrt_core::primitive::{Infeasible, Instances};
 use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
-use nalgebra::{Isometry3, Point2, Vector3};
+use nalgebra::{Isometry3, Point2};
 use rand::{Rng, RngExt};
 
+use super::line::{Line, follow_in_room, follow_path, moved};
 use super::retreat::retreat;
 use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
 use super::travel::travel;
-use super::{Chain, label, line};
+use super::{Chain, label};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
-use crate::contact::{HandStance, RimContact};
+use crate::contact::HandStance;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, TouchReason};
-use crate::push::edge_stop::{EdgeStop, NoPush, PushEnd};
 use crate::tabletop::{Tabletop, TabletopState};
 
-/// A push that reaches less than this far, or than its whole length, is not worth the approach; metres.
+mod course;
+mod hand;
+
+use course::{Course, end_of_push};
+use hand::HandPlace;
+pub(super) use hand::Pushable;
+
+/// A push that is cut short, by what stands in the way or because the arm reaches no farther, is not worth the approach if it
+/// is shorter than this, metres.
 const LEAST_PUSH_M: f64 = 0.02;
+/// Rounding that is forgiven in the length of a push, metres.
+const ROUNDING_M: f64 = 1e-9;
 
 /// The arm's way of one push: down behind the object, to the contact, along the push.
 struct Way<J> {
@@ -28,22 +38,25 @@ struct Way<J> {
     /// At the contact.
     contact: J,
     /// Along the push as far as the arm reaches.
-    along: line::Line<J>,
+    along: Line<J>,
 }
 
 /// Share of the pushes that may take the object as near to other things as the rules allow; the others keep the wanted margin.
 const CLOSE_SHARE: f64 = 0.25;
 
-/// How far before what is in its way the object stops, metres.
-const STOP_BEFORE_M: f64 = 0.01;
-
 /// Retreat, transit to the pushing pose, straight down behind the object, and the push: to the object's target or, where
-/// that lies off the support, to the edge; not so far if something stands in the object's way.
+/// that lies off the support or too near to its edge, to the edge. Straight; where that is blocked along an arc, on which the
+/// object turns with the hand no more sharply than the fingers hold it; and if that is blocked too, straight up to what is in
+/// the way.
+///
+/// A push is long enough to settle what the object's place may be off
+/// ([`steady_push`](crate::push::steady::SlidingDisc::steady_push)), unless its end is nearer than that.
 ///
 /// # Errors
-/// [`Infeasible::NoContact`] for an object that cannot be pushed, [`Infeasible::OffSupport`] if the way leaves its
-/// support, [`Infeasible::NoProgress`] if it is already as near as a push can bring it, [`Infeasible::Blocked`] if the
-/// object or every stance of the robot meets something, [`Infeasible::Unreachable`].
+/// [`Infeasible::NoContact`] for an object that cannot be pushed, [`Infeasible::UnstablePush`] for one that would not stay
+/// at the fingers or is too heavy, [`Infeasible::OffSupport`] if the way leaves its support, [`Infeasible::NoProgress`] if it
+/// is already as near as a push can bring it, [`Infeasible::Blocked`] if the object or every stance of the robot meets
+/// something, [`Infeasible::Unreachable`].
 pub fn push<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
@@ -51,97 +64,103 @@ pub fn push<M: Manipulator>(
     target: &Isometry3<f64>,
     rng: &mut dyn Rng,
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
-    let settings = &m.settings().push;
-    let movable = m.movable(object).filter(|o| o.is_pushable).ok_or(Infeasible::NoContact)?;
-    let radius = movable.round_radius_m.ok_or(Infeasible::NoContact)?;
-    if settings.fingertip_clearance_m >= 2.0 * movable.half_height_m {
-        // The fingertips would pass above it.
-        return Err(Infeasible::NoContact);
-    }
-    let surface = from.mode.support_of(object).and_then(|s| m.surface(s)).ok_or(Infeasible::OffSupport)?;
-    let pose = from.object(object).ok_or(Infeasible::NoContact)?;
-
-    let mut end = end_of_push(m, surface, pose, target, rng)?;
+    let pushable = Pushable::new(m, from, object)?;
+    let settle_m = pushable.steady(m)?.settle_m.max(LEAST_PUSH_M);
+    let end = end_of_push(m, &pushable, target, settle_m, rng)?;
     let care = if rng.random_bool(CLOSE_SHARE) { 0 } else { m.surroundings().most_care() };
-    shorten_to_free(m, from, object, &mut end, care)?;
-    let hand = m.manipulator().hand();
-    let contact =
-        RimContact::new(radius, settings.gap_m, hand.tip_half_width_m()).map_err(|_| Infeasible::NoContact)?;
-    let height = surface.height() + settings.fingertip_clearance_m + hand.tip_beyond_tool_m(settings.gap_m);
-    let twin = HandStance { twin: rng.random_bool(0.5), ..HandStance::default() };
-    let center = Point2::new(pose.translation.x, pose.translation.y);
-    let at_contact =
-        contact.world_from_tool(&center, &end.direction, height, &twin).map_err(|_| Infeasible::NoContact)?;
+    let beside = from.mode.opened_to(pushable.gap_m).and_then(|mode| mode.engaged_with(object));
+    let probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
+    let mut attempt = Attempt { m, from, pushable: &pushable, probe, twin: rng.random_bool(0.5) };
 
-    let wanted = Wanted { world_from_tool: &at_contact, tries: m.settings().base_tries };
-    let beside = from.mode.opened_to(settings.gap_m).and_then(|mode| mode.engaged_with(object));
-    let mut probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
-    let push = Pushing { object, pose, at_contact: &at_contact, end: &end };
-    probe.check_hand(&at_contact, &contacts(object)).map_err(Infeasible::Blocked)?;
-    let mut chain = Chain::at(from);
-    retreat(m, &mut chain, m.settings().retreat_m)?;
-    let way = stance(m, from, &wanted, rng, |q, care| way_of(m, q, &push, &mut probe, care))?;
-    assemble(m, chain, &push, &way, rng)
+    let straight = Course::straight(m, from, &pushable, &end, settle_m, care);
+    if let Ok(course) = &straight
+        && course.is_whole
+    {
+        match attempt.run(course, rng) {
+            Err(Refusal { is_of_hand: true, .. }) => {}
+            done => return done.map_err(|refusal| refusal.why),
+        }
+    }
+    let side = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+    for course in Course::arcs(m, from, &pushable, &end, care, side) {
+        match attempt.run(&course, rng) {
+            Err(Refusal { is_of_hand: true, .. }) => {}
+            done => return done.map_err(|refusal| refusal.why),
+        }
+    }
+    attempt.run(&straight?, rng).map_err(|refusal| refusal.why)
+}
+
+/// A try to push an object along some way.
+struct Attempt<'a, M: Manipulator> {
+    m: &'a Tabletop<M>,
+    from: &'a TabletopState<M>,
+    pushable: &'a Pushable<'a>,
+    probe: Probe<'a, M>,
+    twin: bool,
+}
+
+/// Why there is no push along some way.
+struct Refusal {
+    why: Infeasible,
+    /// Is there no room for the hand alone, wherever the robot stands?
+    is_of_hand: bool,
+}
+
+impl From<Infeasible> for Refusal {
+    fn from(why: Infeasible) -> Self {
+        Self { why, is_of_hand: false }
+    }
+}
+
+impl<M: Manipulator> Attempt<'_, M> {
+    /// The push along `course`, with the hand in the first of its leans in which it can be done.
+    fn run(&mut self, course: &Course, rng: &mut dyn Rng) -> Result<Instances<Tabletop<M>>, Refusal> {
+        let Self { m, from, pushable, twin, .. } = *self;
+        let mut refusal = Refusal { why: Infeasible::NoContact, is_of_hand: true };
+        let mut chain = None;
+        for &lean in &m.settings().push.leans_rad {
+            let stance_of_hand = HandStance { twin, lean };
+            let place = match HandPlace::new(m, pushable, &course.heading, &stance_of_hand, &self.probe) {
+                Ok(place) => place,
+                Err(why) => {
+                    refusal.why = why;
+                    continue;
+                }
+            };
+            let retreated = match chain.take() {
+                Some(chain) => chain,
+                None => {
+                    let mut chain = Chain::at(from);
+                    retreat(m, &mut chain, m.settings().retreat_m)?;
+                    chain
+                }
+            };
+            let wanted = Wanted { world_from_tool: &place.at_contact, tries: m.settings().base_tries };
+            let push = Pushing { pushable, place: &place, course };
+            match stance(m, from, &wanted, rng, |q, care| way_of(m, q, &push, &mut self.probe, care)) {
+                Ok(way) => return Ok(assemble(m, retreated, &push, &way, rng)?),
+                Err(why) => refusal = Refusal { why, is_of_hand: false },
+            }
+            chain = Some(retreated);
+        }
+        Err(refusal)
+    }
 }
 
 /// What is pushed, from where, and how.
 struct Pushing<'a> {
-    object: ObjectId,
-    pose: &'a Isometry3<f64>,
-    at_contact: &'a Isometry3<f64>,
-    end: &'a PushEnd,
+    pushable: &'a Pushable<'a>,
+    place: &'a HandPlace,
+    course: &'a Course,
 }
 
 impl Pushing<'_> {
-    /// Where the object is when `share` of the push is done.
-    fn pose_at(&self, share: f64) -> Isometry3<f64> {
-        let mut pose = *self.pose;
-        let flat = pose.translation.vector.xy();
-        // The whole push ends exactly where it should: who pushes there again comes to the same state.
-        let at = if share >= 1.0 { self.end.center.coords } else { flat.lerp(&self.end.center.coords, share) };
-        (pose.translation.x, pose.translation.y) = (at.x, at.y);
-        pose
+    /// Would the object be left far enough from the edge when `share` of the push is done?
+    fn keeps_from_edge<M: Manipulator>(&self, m: &Tabletop<M>, share: f64) -> bool {
+        let at = self.course.slide.at(share).translation.vector.xy();
+        m.keeps_from_edge(self.pushable.object, self.pushable.on, &Point2::from(at))
     }
-}
-
-/// Ends the push before what stands in the object's way. This costs next to nothing and needs no arm.
-fn shorten_to_free<M: Manipulator>(
-    m: &Tabletop<M>,
-    from: &TabletopState<M>,
-    object: ObjectId,
-    end: &mut PushEnd,
-    care: usize,
-) -> Result<(), Infeasible> {
-    let way = Vector3::new(end.direction.x, end.direction.y, 0.0) * end.length;
-    let (free_m, blame) = m.surroundings().free_slide(from, object, &way, care);
-    if let Some(blame) = blame {
-        let length = free_m - STOP_BEFORE_M;
-        if length < LEAST_PUSH_M {
-            return Err(Infeasible::Blocked(blame));
-        }
-        end.center -= end.direction.into_inner() * (end.length - length);
-        end.length = length;
-        end.limited_by_edge = false;
-    }
-    Ok(())
-}
-
-fn end_of_push<M: Manipulator>(
-    m: &Tabletop<M>,
-    surface: &darrt_geom::support::SupportSurface,
-    pose: &Isometry3<f64>,
-    target: &Isometry3<f64>,
-    rng: &mut dyn Rng,
-) -> Result<PushEnd, Infeasible> {
-    let settings = &m.settings().push;
-    let [least, most] = settings.edge_distance_m;
-    let edge_distance = if least < most { rng.random_range(least..=most) } else { least };
-    let stop = EdgeStop { rule: settings.edge_rule, target_margin: least, edge_distance };
-    let flat = |p: &Isometry3<f64>| Point2::new(p.translation.x, p.translation.y);
-    stop.end_of_push(surface, &flat(pose), &flat(target)).map_err(|why| match why {
-        NoPush::NothingToDo => Infeasible::NoProgress,
-        _ => Infeasible::OffSupport,
-    })
 }
 
 /// The arm's way from a configuration at the contact, if it reaches far enough and its cornerstones are clear.
@@ -152,30 +171,26 @@ fn way_of<M: Manipulator>(
     probe: &mut Probe<'_, M>,
     care: &mut Care,
 ) -> Result<Way<M::Joints>, Refused<M>> {
-    let settings = &m.settings().push;
-    let Pushing { at_contact, end, .. } = push;
-    let touching = contacts(push.object);
+    let Pushing { pushable, place, course } = push;
+    let touching = contacts(pushable.object);
     probe.check(q, &touching, care)?;
-    let ahead = Vector3::new(end.direction.x, end.direction.y, 0.0);
     // The first step decides most often, so it is tried before anything else.
-    let along = line::follow(m, &q.base, &q.arm, at_contact, &(ahead * end.length));
-    if along.share() * end.length < LEAST_PUSH_M.min(end.length) {
+    let object_from_tool = course.slide.from().inverse() * place.at_contact;
+    let along =
+        follow_path(m, &q.base, &q.arm, course.slide.length_m(), |share| course.slide.at(share) * object_from_tool);
+    if along.reached_m() < course.least_m - ROUNDING_M || !push.keeps_from_edge(m, along.share()) {
         return Err(Refused::Unreachable);
     }
-    probe.place(push.object, &push.pose_at(along.share()));
+    probe.place(pushable.object, &course.slide.at(along.share()));
     let pushed = probe.check(&at_end(q.base, &along.arms)?, &touching, care);
-    probe.place(push.object, push.pose);
+    probe.place(pushable.object, pushable.pose);
     pushed?;
-    let back = line::follow(m, &q.base, &q.arm, at_contact, &(-ahead * settings.standoff_m));
-    let standoff = *back.arms.last().filter(|_| back.share() >= 1.0).ok_or(Refused::Unreachable)?;
-    let mut behind = **at_contact;
-    behind.translation.vector -= ahead * settings.standoff_m;
-    let up = line::follow(m, &q.base, &standoff, &behind, &(Vector3::z() * settings.approach_m));
-    if up.share() < m.settings().least_line_share {
-        return Err(Refused::Unreachable);
-    }
-    probe.check(&at_end(q.base, &up.arms)?, &Contacts::default(), care)?;
-    let down = up.arms.iter().rev().copied().chain([standoff]).collect();
+    let mut is_clear = |q: &Configuration<M::Joints>| probe.check(q, &Contacts::default(), care);
+    let back = follow_in_room(m, q, &place.at_contact, &-place.ahead, place.standoff_m, &mut is_clear)?;
+    let standoff = at_end(q.base, &back.arms)?;
+    let behind = moved(&place.at_contact, &-place.ahead, back.reached_m());
+    let up = follow_in_room(m, &standoff, &behind, &-place.pointing, place.approach_m, &mut is_clear)?;
+    let down = up.arms.iter().rev().copied().chain([standoff.arm]).collect();
     Ok(Way { base: q.base, down, contact: q.arm, along })
 }
 
@@ -191,8 +206,8 @@ fn assemble<M: Manipulator>(
     way: &Way<M::Joints>,
     rng: &mut dyn Rng,
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
-    let object = push.object;
-    approach(m, &mut chain, object, way.base, &way.down, m.settings().push.gap_m, Contacts::default(), rng)?;
+    let (object, gap_m) = (push.pushable.object, push.pushable.gap_m);
+    approach(m, &mut chain, object, way.base, &way.down, gap_m, Contacts::default(), rng)?;
 
     let robot = |arm: &M::Joints| Configuration { base: way.base, arm: *arm };
     let reached = way.along.share();
@@ -202,7 +217,7 @@ fn assemble<M: Manipulator>(
         .chain(along.map(|(arm, share)| Waypoint { robot: robot(arm), pushed: share / reached }))
         .collect();
     let mode = chain.end.mode.clone();
-    let carried = Carried::Pushed(object, push.pose_at(reached));
+    let carried = Carried::Pushed(object, push.course.slide.at(reached));
     let motion = ArmMotion::new(m, &chain.end, &waypoints, carried, mode.clone(), mode);
     let instance = Instance {
         label: label::PUSH,

@@ -5,26 +5,36 @@ use darrt_core::primitive::Infeasible;
 use darrt_core::state::ComponentSet;
 use nalgebra::Vector3;
 
-use super::{Chain, label, line};
+use super::line::{cares, follow_in_room};
+use super::stance::{Probe, Refused};
+use super::{Chain, label};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
+use crate::length_range::LengthRange;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, TouchReason};
 use crate::tabletop::Tabletop;
 
-/// If the hand stands at an object, backs it out along its own axis by `by_m` metres; else does nothing.
+/// If the hand stands at an object, backs it out along its own axis, as far as the range wants and there is room; else does
+/// nothing.
 ///
 /// # Errors
-/// [`Infeasible::Unreachable`] if the arm cannot follow far enough.
-pub fn retreat<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>, by_m: f64) -> Result<(), Infeasible> {
+/// [`Infeasible::Unreachable`] if the arm cannot follow far enough, [`Infeasible::Blocked`] if it finds no room.
+pub fn retreat<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>, by_m: LengthRange) -> Result<(), Infeasible> {
     let here = &chain.end;
     let Some(object) = here.mode.engaged() else { return Ok(()) };
     let after = here.mode.disengaged().ok_or(Infeasible::Unreachable)?;
     let tool = m.manipulator().world_from_tool(&here.robot);
-    let back = tool.rotation * Vector3::new(-by_m, 0.0, 0.0);
-    let line = line::follow(m, &here.robot.base, &here.robot.arm, &tool, &back);
-    if line.share() < m.settings().least_line_share {
-        return Err(Infeasible::Unreachable);
+    let back = tool.rotation * -Vector3::x();
+    let mut probe = Probe::new(m, here, after.clone());
+    let mut line = Err(Refused::Unreachable);
+    for care in cares(m) {
+        let none = Contacts::default();
+        line = follow_in_room(m, &here.robot, &tool, &back, by_m, |q| probe.check_all(q, &none, care));
+        if !matches!(line, Err(Refused::Blocked(_))) {
+            break;
+        }
     }
+    let line = line.map_err(|refused| refused.why(m))?;
     let base = here.robot.base;
     let waypoints: Vec<_> =
         line.arms.iter().map(|arm| Waypoint { robot: Configuration { base, arm: *arm }, pushed: 0.0 }).collect();

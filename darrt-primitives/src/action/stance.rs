@@ -61,6 +61,16 @@ pub struct Blocked<M: Manipulator> {
     contacts: Contacts,
 }
 
+impl<M: Manipulator> Refused<M> {
+    /// The same for the planner, which counts it.
+    pub fn why(&self, m: &Tabletop<M>) -> Infeasible {
+        match self {
+            Self::Unreachable => Infeasible::Unreachable,
+            Self::Blocked(blocked) => blocked.why(m),
+        }
+    }
+}
+
 impl<M: Manipulator> Blocked<M> {
     /// What is in the way.
     fn why(&self, m: &Tabletop<M>) -> Infeasible {
@@ -221,8 +231,29 @@ impl<'a, M: Manipulator> Probe<'a, M> {
             0 => around.is_rest_clear(robot, &self.state, contacts),
             level => around.is_state_clear(robot, &self.state, contacts, level),
         };
-        if let Some(kept) = (care.least..=care.kept).rev().find(|level| is_clear(*level)) {
+        let kept = (care.least..=care.kept).rev().find(|level| is_clear(*level));
+        if let Some(kept) = kept {
             care.kept = kept;
+        }
+        self.clear_or_refused(kept.is_some(), contacts)
+    }
+
+    /// [`Probe::is_clear`] as a reason to refuse a configuration.
+    ///
+    /// # Errors
+    /// [`Refused::Blocked`] with the state asked about.
+    pub fn check_all(
+        &mut self,
+        q: &Configuration<M::Joints>,
+        contacts: &Contacts,
+        care: usize,
+    ) -> Result<(), Refused<M>> {
+        let is_clear = self.is_clear(q, contacts, care);
+        self.clear_or_refused(is_clear, contacts)
+    }
+
+    fn clear_or_refused(&self, is_clear: bool, contacts: &Contacts) -> Result<(), Refused<M>> {
+        if is_clear {
             return Ok(());
         }
         Err(Refused::Blocked(Box::new(Blocked { state: self.state.clone(), contacts: *contacts })))

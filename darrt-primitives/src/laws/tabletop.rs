@@ -24,9 +24,11 @@ pub const HELD_RIGID: &str = "tabletop.held-rigid: while an object is held, its 
 /// Resting objects.
 pub const STILL: &str = "tabletop.still: an object that rests moves only when the hand stands at it and pushes it";
 /// Support of a pushed object.
-pub const SUPPORT: &str = "tabletop.support: a pushed object stays on its surface and over it, and does not turn";
+pub const SUPPORT: &str = "tabletop.support: a pushed object stays on its surface and over it, and does not lean";
 /// Ray of a push.
-pub const RAY: &str = "tabletop.ray: a pushed object moves forwards on the straight line to where it ends";
+pub const RAY: &str = "tabletop.ray: a pushed object moves forwards on the straight line to where it ends, or on the arc that turns it so far";
+/// Sharpness of a push.
+pub const TURN: &str = "tabletop.turn: a pushed object turns no more sharply than two fingers hold it";
 /// Contact of a push.
 pub const CONTACT: &str =
     "tabletop.contact: from where a pushed object begins to move, the hand stays at the same place beside it";
@@ -55,8 +57,9 @@ pub const FINGERS: &str = "tabletop.fingers: the fingers may touch what they pus
 pub const INSIDE: &str = "tabletop.inside: base and arm stay within their limits all the way, if they begin there";
 
 /// The laws of this file.
-pub const LAWS: &[&str] =
-    &[HELD_RIGID, STILL, SUPPORT, RAY, CONTACT, TOUCH, ATTACH, PICK_YAW, RELEASE, MODES, EXEMPT, STRAIGHT, RETREAT];
+pub const LAWS: &[&str] = &[
+    HELD_RIGID, STILL, SUPPORT, RAY, TURN, CONTACT, TOUCH, ATTACH, PICK_YAW, RELEASE, MODES, EXEMPT, STRAIGHT, RETREAT,
+];
 
 /// How exactly instances keep to their lines.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -162,11 +162,26 @@ impl EdgeStop {
         from: &Point2<f64>,
         target: &Point2<f64>,
     ) -> Result<PushEnd, NoPush> {
+        let (center, limited_by_edge) = self.center_at_end(surface, from, target)?;
+        straight_push(surface, from, center, limited_by_edge)
+    }
+
+    /// Where the centre of a disc ends that is pushed from `from` toward `target`, whichever way it goes, and whether the edge
+    /// stands in for the target; world x and y, metres.
+    ///
+    /// # Errors
+    /// The reason why there is no push, straight or not.
+    pub fn center_at_end(
+        &self,
+        surface: &SupportSurface,
+        from: &Point2<f64>,
+        target: &Point2<f64>,
+    ) -> Result<(Point2<f64>, bool), NoPush> {
         if !surface.contains(from) {
             return Err(NoPush::NotOnSupport);
         }
         if surface.depth(target) >= self.target_margin {
-            return straight_push(surface, from, *target, false);
+            return Ok((*target, false));
         }
         let center = match self.rule {
             EdgeRule::NearestEdgePoint => self.beside_nearest_edge(surface, target)?,
@@ -175,7 +190,7 @@ impl EdgeStop {
         if (center - target).norm() >= (from - target).norm() {
             return Err(NoPush::NothingToDo);
         }
-        straight_push(surface, from, center, true)
+        Ok((center, true))
     }
 
     /// The stop beside the edge point nearest to `target`.

@@ -6,11 +6,12 @@ use darrt_core::state::ObjectId;
 use darrt_core::validity::Blame;
 use darrt_geom::allowed::AllowedContacts;
 use darrt_geom::body_set::{BodyIndex, BodySet};
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 
 use super::{Strict, Surroundings, Worker};
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::Contacts;
+use crate::push::slide::Slide;
 use crate::tabletop::TabletopState;
 
 /// The bodies of the hand as they hang on the tool.
@@ -114,19 +115,20 @@ impl Surroundings {
         (moved, BodySet::ALL.difference(&self.all_links.difference(&self.hand_links)))
     }
 
-    /// How far a resting object could slide in a straight line with this [care](Surroundings::most_care) if the robot were
-    /// not there: metres along `way`, at most its length, and what ends it.
+    /// How far a resting object could slide with this [care](Surroundings::most_care) if the robot were not there: metres
+    /// along the way of its centre, at most all of it, and what ends it.
     pub fn free_slide<M: Manipulator>(
         &self,
         from: &TabletopState<M>,
         object: ObjectId,
-        way: &Vector3<f64>,
+        slide: &Slide,
         care: usize,
     ) -> (f64, Option<Blame>) {
-        let length_m = way.norm();
-        let (Some(id), Some(start)) = (self.objects.get(object.index()).copied(), from.object(object)) else {
-            return (0.0, None);
-        };
+        let length_m = slide.length_m();
+        let Some(id) = self.objects.get(object.index()).copied() else { return (0.0, None) };
+        let (centre, radius) = self.model.ball(id).map_or((Point3::origin(), 0.0), |ball| ball);
+        // How far the farthest point goes for each metre of the centre.
+        let widest = 1.0 + slide.curvature().abs() * (centre.coords.norm() + radius);
         let hit = self.with_worker(|worker| {
             self.set_rules(from, &Contacts::default(), Strict::with(care), worker);
             self.pose_objects(from, worker);
@@ -135,14 +137,13 @@ impl Surroundings {
             let others = BodySet::ALL.difference(&self.all_links);
             let mut s = 0.0;
             loop {
-                let mut pose = *start;
-                pose.translation.vector += way * if length_m > 0.0 { s / length_m } else { 0.0 };
+                let pose = slide.at(if length_m > 0.0 { s / length_m } else { 0.0 });
                 self.model.set_pose(&mut worker.scratch, id, &pose);
                 match self.lower_bound(worker, &moved, &others, self.strictness.cap_m) {
                     // Up to here it came by no more than was free, so it was clear that much before.
                     Err(hit) => return Err(((s - worker.keep.most_m).max(0.0), hit)),
                     Ok(_) if s >= length_m => return Ok(()),
-                    Ok(free) => s = (s + free.max(self.unseen_m)).min(length_m),
+                    Ok(free) => s = (s + free.max(self.unseen_m) / widest).min(length_m),
                 }
             }
         });

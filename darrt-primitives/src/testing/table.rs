@@ -17,6 +17,7 @@ use crate::error::PrimitiveError;
 use crate::grasp::footprint::Footprint;
 use crate::grasp::overhead::OverheadGrasps;
 use crate::grasp::{GraspFamily, Grip};
+use crate::length_range::LengthRange;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Mode, SurfaceId};
 use crate::object_space::{ObjectSpace, ObjectSpaceParts};
@@ -37,6 +38,8 @@ const HEIGHT_M: f64 = 0.7;
 const TIN_M: [f64; 2] = [0.04, 0.08];
 /// Sizes of the box, metres.
 const BOX_M: [f64; 3] = [0.05, 0.16, 0.06];
+/// How far inside the edges of the tables objects are left, metres.
+const EDGE_MARGIN_M: f64 = 0.02;
 /// How far below the top the fingertips grasp, metres.
 const DEPTH_M: f64 = 0.03;
 
@@ -98,7 +101,7 @@ pub fn furnished_table(
     let mut objects = vec![tin("red tin")?, tin("blue tin")?, movable("box", cuboid, footprint, &surfaces)?];
     let space = ArmSpace::new([-2.0; 2], [2.0; 2], robot.limits(), robot.joint_weights_m())?;
     let supports = surfaces.iter().map(|surface| Support { surface: surface.clone(), bodies: Vec::new() });
-    let mut settings = settings();
+    let mut settings = settings()?;
     change(&mut objects, &mut settings);
     Ok(Tabletop::new(Arc::new(robot), space, objects, supports.collect(), fixed, settings)?)
 }
@@ -132,8 +135,14 @@ fn movable(
         half_height_m,
         surfaces: surfaces.to_vec(),
         surface_share: 0.7,
+        edge_margin_m: EDGE_MARGIN_M,
     })?;
-    let grip = Grip { open_gap: 0.095, tip_ahead: super::gantry::TIP_BEYOND_TOOL_M, approach: 0.1, ..Grip::default() };
+    let grip = Grip {
+        open_gap: 0.095,
+        tip_ahead: super::gantry::TIP_BEYOND_TOOL_M,
+        approach: LengthRange::new(0.05, 0.1)?,
+        ..Grip::default()
+    };
     let grasps = OverheadGrasps::new(footprint, 2.0 * half_height_m, DEPTH_M, grip)?;
     let movable = Movable {
         body: Body::single(name, shape)?,
@@ -148,36 +157,39 @@ fn movable(
         mass_kg: 0.3,
         friction: ObjectFriction { table: 0.3, fingers: 0.5 },
         max_tilt_rad: std::f64::consts::PI,
+        brinks: Vec::new(),
     };
     Ok((space, movable))
 }
 
-fn settings() -> ActionSettings<motion::Joints> {
-    ActionSettings {
+fn settings() -> Result<ActionSettings<motion::Joints>, PrimitiveError> {
+    Ok(ActionSettings {
         push: PushSettings {
             gap_m: 0.04,
             fingertip_clearance_m: 0.005,
-            standoff_m: 0.03,
-            approach_m: 0.12,
+            leans_rad: vec![0.0],
+            standoff_m: LengthRange::new(0.02, 0.03)?,
+            approach_m: LengthRange::new(0.06, 0.12)?,
+            position_error_m: 0.002,
+            max_turn_rad: 1.0,
             edge_rule: EdgeRule::NearestEdgePoint,
             edge_distance_m: [0.02, 0.06],
         },
         place: PlaceSettings {
             approach_directions: vec![-Vector3::z()],
-            approach_m: 0.1,
-            retreat_m: 0.1,
+            approach_m: LengthRange::new(0.05, 0.1)?,
+            retreat_m: LengthRange::new(0.05, 0.1)?,
             release_opening_m: 0.01,
         },
-        safety: SafetySettings::default(),
-        retreat_m: 0.1,
-        least_line_share: 0.5,
+        safety: SafetySettings { edge_margin_m: EDGE_MARGIN_M, ..SafetySettings::default() },
+        retreat_m: LengthRange::new(0.05, 0.1)?,
         line_step_m: 0.02,
         drives: [true, true],
         base_tries: 12,
         grasp_tries: 6,
         postures: vec![motion::pointing_down(0.0, 0.0, 1.4, 0.0)],
         travel_gap_m: 0.08,
-    }
+    })
 }
 
 /// Two tins and the box on the left table, the hand open above them.

@@ -1,5 +1,7 @@
 use super::*;
-use crate::problem_file::{ArmSide, GoalState, GraspFamily, ObjectGoal, PrimitiveName, ShapeSpec, Symmetry};
+use crate::problem_file::{
+    ArmSide, GoalState, GraspFamily, LengthRange, ObjectGoal, PrimitiveName, ShapeSpec, Symmetry,
+};
 
 #[test]
 fn every_embedded_problem_is_valid_and_bears_its_name() {
@@ -104,12 +106,14 @@ fn plates_are_round_flat_and_only_taken_by_the_rim() {
         assert_eq!((plate.mass_kg, plate.symmetry(), plate.pushable()), (0.5, Symmetry::Z, true));
         assert_eq!(plate.grasps, [GraspFamily::Rim]);
         assert_eq!(plate.rim_tilts_deg(), [0.0]);
-        assert_eq!((plate.rim.insertion_m, plate.rim.lift_m, plate.rim.approach_m), (0.04, 0.12, 0.10));
+        assert_eq!((plate.rim.insertion_m, plate.rim.lift_m), (0.04, 0.12));
+        assert_eq!(plate.rim.approach_m, LengthRange::new(0.05, 0.10));
         assert_eq!(problem.primitives, PrimitiveName::ALL);
-        assert_eq!((problem.push.gap_m, problem.push.fingertip_clearance_m), (0.08, 0.005));
+        assert_eq!((problem.push.gap_m, problem.push.fingertip_clearance_m), (0.088, 0.005));
+        assert_eq!(problem.push.standoff_m, LengthRange::new(0.03, 0.05));
         assert_eq!(problem.push.edge_distance_m, [0.03, 0.08]);
         assert_eq!(problem.place.approach_directions, [[-0.424, -0.424, -0.8]]);
-        assert_eq!(problem.place.approach_m, 0.20);
+        assert_eq!(problem.place.approach_m, LengthRange::new(0.02, 0.20));
         assert_eq!(only_goal(&problem).yaw, None, "{name}: any orientation about z");
     }
 }
@@ -200,8 +204,11 @@ fn the_bowl_is_not_pushed_and_stands_on_a_shelf() {
     let bowl = &problem.objects[0];
     assert_eq!(bowl.shape, ShapeSpec::Bowl { radius: 0.075, height: 0.065, wall: 0.005 });
     assert_eq!((bowl.mass_kg, bowl.pushable(), bowl.on.as_str()), (0.3, false, "shelf"));
-    assert_eq!((bowl.grasps.as_slice(), bowl.overhead.insertion_m), ([GraspFamily::Overhead].as_slice(), 0.03));
-    assert_eq!((bowl.overhead.approach_m, bowl.overhead.lift_m), (0.10, 0.10));
+    assert_eq!(
+        (bowl.grasps.as_slice(), bowl.overhead.insertion_m),
+        ([GraspFamily::Overhead].as_slice(), LengthRange::new(0.015, 0.03))
+    );
+    assert_eq!((bowl.overhead.approach_m, bowl.overhead.lift_m), (LengthRange::new(0.05, 0.10), 0.10));
     let geometry = problem.geometry().unwrap();
     assert!((geometry.scene.surface("shelf").unwrap().height() - 0.80).abs() < 1e-12);
     assert!((geometry.objects[0].world_from_object.translation.z - 0.8325).abs() < 1e-12);

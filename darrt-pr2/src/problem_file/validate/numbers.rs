@@ -2,8 +2,11 @@
 
 use toml::Value;
 
-use crate::problem_file::ProblemFile;
 use crate::problem_file::error::{Flaw, Located};
+use crate::problem_file::{LengthRange, ProblemFile};
+
+/// Longest straight motion and deepest insertion of a grasp (m).
+pub(super) const LONGEST_MOTION: f64 = 1.0;
 
 /// Largest accepted magnitude of any number in a problem file.
 const LARGEST: f64 = 1e6;
@@ -67,6 +70,13 @@ pub(super) fn ordered(key: &str, [low, high]: [f64; 2]) -> Result<(), Located> {
         return Ok(());
     }
     Err(Flaw::Inverted { low, high }.at(key))
+}
+
+/// The lengths of a straight motion are in order, and none is longer than [`LONGEST_MOTION`].
+pub(super) fn motion(key: &str, range: LengthRange) -> Result<(), Located> {
+    within(key, range.wanted_m, 0.0, LONGEST_MOTION)?;
+    ordered(key, range.into())?;
+    within(&format!("{key}[0]"), range.least_m, 0.0, LONGEST_MOTION)
 }
 
 /// A list has between `least` and `most` entries.

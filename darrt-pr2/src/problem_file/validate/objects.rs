@@ -1,10 +1,10 @@
 //! Rules of the movable objects.
 
 use super::names::surface;
-use super::numbers::{length, positive, within};
+use super::numbers::{length, motion, positive, within};
 use super::world::check_shape;
 use crate::problem_file::error::{Flaw, Located};
-use crate::problem_file::{GraspFamily, Object, ProblemFile, ShapeSpec, Symmetry};
+use crate::problem_file::{GraspFamily, LengthRange, Object, ProblemFile, ShapeSpec, Symmetry};
 
 /// Most movable objects.
 const MOST_OBJECTS: usize = 64;
@@ -17,9 +17,6 @@ const MOST_AZIMUTHS: u32 = 3600;
 
 /// Largest coefficient of friction.
 const LARGEST_FRICTION: f64 = 2.0;
-
-/// Longest straight motion and deepest insertion of a grasp (m).
-pub(super) const LONGEST_MOTION: f64 = 1.0;
 
 /// Widest gap between the fingers (m).
 pub(super) const WIDEST_GAP: f64 = 0.09;
@@ -90,16 +87,23 @@ fn check_roundness(object: &Object, key: &str) -> Result<(), Located> {
 fn check_families(object: &Object, key: &str) -> Result<(), Located> {
     let (rim, overhead, side) = (&object.rim, &object.overhead, &object.side);
     let rim_tilts = object.rim_tilts_deg();
+    let exact = |length_m| LengthRange::new(length_m, length_m);
     let families = [
-        ("rim", &rim_tilts, rim.azimuths, [rim.insertion_m, rim.approach_m, rim.lift_m], rim.opening_m),
+        ("rim", &rim_tilts, rim.azimuths, [exact(rim.insertion_m), rim.approach_m, exact(rim.lift_m)], rim.opening_m),
         (
             "overhead",
             &overhead.tilts_deg,
             overhead.azimuths,
-            [overhead.insertion_m, overhead.approach_m, overhead.lift_m],
+            [overhead.insertion_m, overhead.approach_m, exact(overhead.lift_m)],
             overhead.opening_m,
         ),
-        ("side", &side.tilts_deg, side.azimuths, [side.insertion_m, side.approach_m, side.lift_m], side.opening_m),
+        (
+            "side",
+            &side.tilts_deg,
+            side.azimuths,
+            [exact(side.insertion_m), side.approach_m, exact(side.lift_m)],
+            side.opening_m,
+        ),
     ];
     for (name, tilts, azimuths, lengths, opening) in families {
         let key = format!("{key}.{name}");
@@ -109,7 +113,7 @@ fn check_families(object: &Object, key: &str) -> Result<(), Located> {
         }
         within(&format!("{key}.azimuths"), f64::from(azimuths), 1.0, f64::from(MOST_AZIMUTHS))?;
         for (name, value) in ["insertion_m", "approach_m", "lift_m"].into_iter().zip(lengths) {
-            within(&format!("{key}.{name}"), value, 0.0, LONGEST_MOTION)?;
+            motion(&format!("{key}.{name}"), value)?;
         }
         within(&format!("{key}.opening_m"), opening, 0.0, WIDEST_GAP)?;
     }

@@ -1,13 +1,21 @@
 //! Rules of the primitives' and the planner's settings.
 
 use super::names::posture;
-use super::numbers::{length, ordered, positive, within};
-use super::objects::{LONGEST_MOTION, WIDEST_GAP};
+use darrt_primitives::contact::MAX_LEAN;
+
+use super::numbers::{LONGEST_MOTION, length, motion, ordered, positive, within};
+use super::objects::WIDEST_GAP;
 use crate::problem_file::error::{Flaw, Located};
 use crate::problem_file::{Place, PrimitiveName, ProblemFile, Push, Safety, Sampling};
 
 /// Most directions from which Place may approach, and most postures.
 const MOST_ENTRIES: usize = 64;
+
+/// Farthest turn of an object in one push, degrees.
+const MOST_TURN_DEG: f64 = 120.0;
+
+/// Most leans of a pushing hand.
+const MOST_LEANS: usize = 16;
 
 /// Largest distance of `[safety]` (m).
 const LARGEST_MARGIN: f64 = 0.5;
@@ -60,12 +68,20 @@ fn check_safety(safety: &Safety) -> Result<(), Located> {
 
 fn check_push(push: &Push) -> Result<(), Located> {
     positive("push.gap_m", push.gap_m)?;
+    length("push.leans_deg", push.leans_deg.len(), 1, MOST_LEANS)?;
+    for (index, &lean) in push.leans_deg.iter().enumerate() {
+        within(&format!("push.leans_deg[{index}]"), lean, 0.0, MAX_LEAN.to_degrees().round())?;
+    }
+    within("push.max_turn_deg", push.max_turn_deg, 0.0, MOST_TURN_DEG)?;
+    for (name, range) in
+        [("standoff_m", push.standoff_m), ("approach_m", push.approach_m), ("retreat_m", push.retreat_m)]
+    {
+        motion(&format!("push.{name}"), range)?;
+    }
     within("push.gap_m", push.gap_m, 0.0, WIDEST_GAP)?;
     let lengths = [
         ("fingertip_clearance_m", push.fingertip_clearance_m),
-        ("standoff_m", push.standoff_m),
-        ("approach_m", push.approach_m),
-        ("retreat_m", push.retreat_m),
+        ("position_error_m", push.position_error_m),
         ("edge_distance_m[0]", push.edge_distance_m[0]),
         ("edge_distance_m[1]", push.edge_distance_m[1]),
     ];
@@ -85,8 +101,8 @@ fn check_place(place: &Place) -> Result<(), Located> {
             return Err(Flaw::OutOfRange { value: direction[2], bound }.at(key));
         }
     }
-    within("place.approach_m", place.approach_m, 0.0, LONGEST_MOTION)?;
-    within("place.retreat_m", place.retreat_m, 0.0, LONGEST_MOTION)
+    motion("place.approach_m", place.approach_m)?;
+    motion("place.retreat_m", place.retreat_m)
 }
 
 /// Samples of the goal are moved to edges as well; this many may be.

@@ -1,5 +1,7 @@
 //! What differs between two waypoints, and whether the step may change it.
 
+use nalgebra::Vector3;
+
 use super::{Judge, Place, Trial};
 use crate::problem_file::PrimitiveName;
 use crate::verify::mode::drives;
@@ -43,8 +45,11 @@ impl<'a> Judge<'a> {
             }
             let slack = self.options.rounding;
             let risen = (a.translation.z - b.translation.z).abs();
-            if risen > slack || a.rotation.angle_to(&b.rotation) > slack.max(1e-7) {
-                let text = format!("{name} is pushed and must neither rise nor turn; it rises {risen:.6} m");
+            let lean = (a.rotation * Vector3::z()).angle(&(b.rotation * Vector3::z()));
+            if risen > slack || lean > slack.max(1e-7) {
+                let text = format!(
+                    "{name} is pushed and must neither rise nor lean; it rises {risen:.6} m, leans {lean:.6} rad"
+                );
                 return Err(site.refusal(place.time(1.0), RefusalKind::Push, text));
             }
             if changes.finger != 0.0 {

@@ -1,8 +1,8 @@
 //! One moment of a step: where the objects are, and everything that must hold then.
 
-use nalgebra::{Isometry3, Point2, Vector2, Vector3};
+use nalgebra::{Isometry3, Point2, Vector3};
 
-use super::{Judge, Trial};
+use super::{Judge, Trial, Way};
 use crate::verify::mode::Mode;
 use crate::verify::motion::{Segment, State};
 use crate::verify::refusal::{Refusal, RefusalKind, Site};
@@ -54,13 +54,27 @@ impl<'a> Judge<'a> {
         Err(trial.site.refusal(time, RefusalKind::Grasp, text).at(&written.translation.vector.into()))
     }
 
+    /// A pushed object has turned with the hand.
+    pub(super) fn check_turned_along(&self, trial: &Trial<'a>, time: f64, now: &State) -> Result<(), Refusal> {
+        let (Some(before), Some(object)) = (trial.object_from_tool, trial.act.pushed) else { return Ok(()) };
+        let Some(pose) = now.objects.get(object) else { return Ok(()) };
+        let here = pose.rotation.inverse() * self.world_from_tool().rotation;
+        let turned = here.angle_to(&before);
+        if turned <= self.options.line_rad {
+            return Ok(());
+        }
+        let (name, bound) = (self.world.object_name(object), self.options.line_rad);
+        let text = format!("the hand turns by {turned:.4} rad against {name} that it pushes, at most {bound:.4}");
+        Err(trial.site.refusal(time, RefusalKind::Push, text).at(&pose.translation.vector.into()))
+    }
+
     /// Everything about one state of a step.
     pub(super) fn check_state(
         &mut self,
         trial: &Trial<'a>,
         time: f64,
         now: &State,
-        way: Option<Vector2<f64>>,
+        way: Option<Way>,
     ) -> Result<(), Refusal> {
         let site = trial.site;
         if let (Some(core), Some(object)) = (&trial.core, trial.act.pushed) {

@@ -2,7 +2,7 @@
 
 use darrt_pr2::plan_file::{PlanFile, Waypoint};
 use darrt_pr2::problem_file::{PrimitiveName, Surface};
-use darrt_pr2::verify::RefusalKind;
+use darrt_pr2::verify::{RefusalKind, verify};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use super::{about, from_here_on, plate, refused, waypoint};
@@ -54,6 +54,38 @@ fn what_is_carried_leans_no_farther_than_it_may() {
         refused(plans::carry(), 2, RefusalKind::Tilt, |plan| plan.problem.objects[0].max_tilt_deg = Some(0.0));
     assert!(refusal.message.contains("while it is carried, at most 0"), "{refusal}");
     about(&refusal, PLATE, "the vertical");
+}
+
+#[test]
+fn what_is_too_heavy_is_not_pushed() {
+    // 0.3 * 10.2 kg * 9.81 m/s^2 = 30.02 N.
+    let refusal = refused(plans::push(), 2, RefusalKind::Push, |plan| plan.problem.objects[0].mass_kg = 10.2);
+    assert!(refusal.message.contains("30.0 N against its friction"), "{refusal}");
+    verify(&with(plans::push(), |plan| plan.problem.objects[0].mass_kg = 10.1)).unwrap();
+}
+
+/// A plan after a change.
+fn with(mut plan: PlanFile, change: impl FnOnce(&mut PlanFile)) -> PlanFile {
+    change(&mut plan);
+    plan
+}
+
+#[test]
+fn nothing_is_left_at_an_edge_unless_its_goal_is_there() {
+    use RefusalKind as K;
+    // The push ends 0.25 m inside the edge, the plate is set down 0.07 m inside.
+    for (plan, step, margin_m) in [(plans::push(), 2, 0.26), (plans::carry(), 6, 0.08)] {
+        let far = |plan: &mut PlanFile| plan.problem.safety.edge_margin_m = margin_m;
+        let elsewhere = |plan: &mut PlanFile| {
+            far(plan);
+            plan.problem.goal.objects[0].at = Some([0.2, 0.0]);
+        };
+        let refusal = refused(plan.clone(), step, K::Edge, elsewhere);
+        about(&refusal, PLATE, "central table");
+        assert!(refusal.message.contains("inside the edge"), "{refusal}");
+        // The goal that is there forces it.
+        verify(&with(plan, far)).unwrap();
+    }
 }
 
 #[test]

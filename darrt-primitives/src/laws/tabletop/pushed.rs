@@ -3,15 +3,18 @@
 use darrt_core::laws::{Broken, at_most, ensure};
 use darrt_core::state::ObjectId;
 use darrt_geom::oracle::{PosedBody, nearest};
-use nalgebra::{Isometry3, Point2};
+use nalgebra::{Isometry3, Point2, Vector3};
 
-use super::{CONTACT, Look, RAY, STILL, SUPPORT, TOUCH, Trial};
+use super::{CONTACT, Look, RAY, STILL, SUPPORT, TOUCH, TURN, Trial};
 use crate::laws::manipulator::same_pose;
 use crate::manipulator::{LinkGroup, Manipulator};
+use crate::push::slide::Slide;
 use crate::tabletop::TabletopState;
 
 /// Rounding that is forgiven in the way of a pushed object, metres and radians.
 const ROUNDING: f64 = 1e-9;
+/// Rounding of angles between poses, radians: an arc cosine near 1 loses half of the digits.
+const LEAN: f64 = 1e-7;
 /// How far the surface and the bottom of what stands on it may be apart, metres.
 const ON_SURFACE_M: f64 = 1e-6;
 
@@ -32,6 +35,7 @@ impl<M: Manipulator> Trial<'_, M> {
                 let states = moved.iter().map(|look| (look.t, &look.state)).chain([(1.0, &self.end)]);
                 self.on_support(id, start, states)?;
                 on_ray(id, start, end, &moved)?;
+                self.held_by_the_fingers(id, &Slide::new(*start, *end))?;
                 self.in_contact(id, end, &moved)?;
                 self.touched(id, &self.end).map_err(|broken| broken.at(1.0))
             };
@@ -56,8 +60,8 @@ impl<M: Manipulator> Trial<'_, M> {
         for (t, state) in states {
             let check = || {
                 let Some(pose) = state.object(id) else { return Ok(()) };
-                at_most(SUPPORT, pose.rotation.angle_to(&start.rotation), 0.0, ROUNDING)
-                    .map_err(|broken| broken.of("turn"))?;
+                let lean = (pose.rotation * Vector3::z()).angle(&(start.rotation * Vector3::z()));
+                at_most(SUPPORT, lean, 0.0, LEAN).map_err(|broken| broken.of("lean"))?;
                 let height = pose.translation.z - movable.half_height_m - surface.height();
                 at_most(SUPPORT, height.abs(), 0.0, ON_SURFACE_M).map_err(|broken| broken.of("height"))?;
                 let at = Point2::new(pose.translation.x, pose.translation.y);
@@ -67,6 +71,18 @@ impl<M: Manipulator> Trial<'_, M> {
             check().map_err(|broken: Broken| broken.at(t))?;
         }
         Ok(())
+    }
+
+    /// The way is no sharper than the closed form for two contacts a gap apart, of a disc that rests on its rim: with beta and
+    /// alpha the angles of contacts and friction, R sin(beta) / R^2, or R sin(alpha) cos(alpha) / cos(beta) / R^2 if alpha is
+    /// less than beta (Lynch and Mason 1996).
+    fn held_by_the_fingers(&self, id: ObjectId, slide: &Slide) -> Result<(), Broken> {
+        let Some(movable) = self.m.movable(id).filter(|_| slide.turn() != 0.0) else { return Ok(()) };
+        let radius = movable.round_radius_m.unwrap_or(f64::INFINITY);
+        let alpha = movable.friction.fingers.atan();
+        let beta = (0.5 * self.during.mode.gap_m() / radius).min(1.0).asin();
+        let offset = if alpha < beta { alpha.sin() * alpha.cos() / beta.cos() } else { beta.sin() };
+        at_most(TURN, slide.curvature().abs(), offset / radius, ROUNDING).map_err(|broken| broken.of("curvature"))
     }
 
     /// The tool stands to the object as it does at the end.
@@ -110,20 +126,27 @@ fn on_ray<M: Manipulator>(
     end: &Isometry3<f64>,
     moved: &[&Look<M>],
 ) -> Result<(), Broken> {
-    let way = end.translation.vector - start.translation.vector;
-    let length = way.norm();
+    let slide = Slide::new(*start, *end);
+    let length = slide.length_m();
     ensure(RAY, length > 0.0, || "ends where it began".to_owned(), "an end ahead").map_err(|b| b.at(1.0))?;
     let mut done = 0.0;
     for look in moved {
         let Some(pose) = look.state.object(id) else { continue };
-        let off = pose.translation.vector - start.translation.vector;
-        let along = off.dot(&way) / length;
-        let check = at_most(RAY, (off - way * (along / length)).norm(), 0.0, ROUNDING)
+        // How much of the way is done: the chord to a part of an arc is as long as the sine of half its turn.
+        let way = (pose.translation.vector - start.translation.vector).norm();
+        let half = slide.turn() / 2.0;
+        let whole = (end.translation.vector - start.translation.vector).norm();
+        let share = if half == 0.0 { way / whole } else { (way / whole * half.sin()).clamp(-1.0, 1.0).asin() / half };
+        let there = slide.at(share);
+        let check = at_most(RAY, (pose.translation.vector - there.translation.vector).norm(), 0.0, ROUNDING)
             .map_err(|broken| broken.of("off the ray"))
-            .and_then(|()| at_most(RAY, done, along, ROUNDING).map_err(|broken| broken.of("backwards")))
-            .and_then(|()| at_most(RAY, along, length, ROUNDING).map_err(|broken| broken.of("too far")));
+            .and_then(|()| {
+                at_most(RAY, pose.rotation.angle_to(&there.rotation), 0.0, LEAN).map_err(|broken| broken.of("turn"))
+            })
+            .and_then(|()| at_most(RAY, done, share * length, ROUNDING).map_err(|broken| broken.of("backwards")))
+            .and_then(|()| at_most(RAY, share, 1.0, ROUNDING).map_err(|broken| broken.of("too far")));
         check.map_err(|broken| broken.at(look.t))?;
-        done = along;
+        done = share * length;
     }
     Ok(())
 }

@@ -6,8 +6,9 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use super::Case;
 use super::bench::{Act, Scene, pose_mut, scene, shift};
 use crate::laws::check_finger_contacts;
-use crate::laws::tabletop::{CONTACT, FINGERS, RAY, SUPPORT, TOUCH};
+use crate::laws::tabletop::{CONTACT, FINGERS, RAY, SUPPORT, TOUCH, TURN};
 use crate::mode::Contacts;
+use crate::push::slide::Slide;
 use crate::testing::scene_oracle::SceneOracle;
 use crate::testing::table::object;
 
@@ -63,11 +64,31 @@ pub(super) fn cases() -> Vec<Case> {
         case("rolls aside", "the tin leaves the ray through its centre, and comes back to it", RAY, || {
             moved(|pose, way, s| pose.translation.vector += way.cross(&Vector3::z()) * (0.1 * s * (1.0 - s)))
         }),
-        case("turns the tin", "the friction of one finger turns the tin along", SUPPORT, || {
+        case("turns the tin", "the friction of one finger turns the tin along, and it goes straight on", RAY, || {
             moved(|pose, _, s| {
                 pose.rotation = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 0.2 * s) * pose.rotation;
             })
         }),
+        case("tips the tin", "the tin leans as it is pushed", SUPPORT, || {
+            moved(|pose, _, s| {
+                pose.rotation = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.2 * s) * pose.rotation;
+            })
+        }),
+        case(
+            "turns too sharply",
+            "the arc is as sharp as the arm can turn, and the tin rolls off the fingers",
+            TURN,
+            || {
+                let (scene, start, way) = push()?;
+                let arc = Slide::along_arc(start, &(start.translation.vector + way).xy(), 2.5);
+                let moves = move |_: &_, _, state: &mut _| {
+                    if let Some(pose) = pose_mut(state, object(0)) {
+                        *pose = arc.at((pose.translation.vector - start.translation.vector).norm() / way.norm());
+                    }
+                };
+                scene.warped(Box::new(moves)).check()
+            },
+        ),
         case("lifts the tin", "the tin follows the hand's height", SUPPORT, || {
             moved(|pose, _, s| pose.translation.z += 0.01 * s)
         }),

@@ -1,0 +1,163 @@
+//! Where a hand stands to push, and how it comes there: gap, lean, heights, and the room behind and above the contact.
+
+use darrt_core::primitive::Infeasible;
+use darrt_core::state::ObjectId;
+use darrt_geom::support::SupportSurface;
+use nalgebra::{Isometry3, Point2, Unit, Vector2, Vector3};
+
+use super::contacts;
+use crate::action::line::{moved, room_for_hand};
+use crate::action::stance::Probe;
+use crate::contact::{Fingertips, HandStance, PushHeights, RimContact};
+use crate::length_range::LengthRange;
+use crate::manipulator::Manipulator;
+use crate::mode::{Contacts, SurfaceId};
+use crate::push::Friction;
+use crate::push::steady::{SlidingDisc, SteadyPush};
+use crate::tabletop::{Movable, Tabletop, TabletopState};
+
+/// Just before the contact the hand, which need not touch the object with anything but its fingertips, is this much farther
+/// from it than the contact margin, metres.
+const BEFORE_CONTACT_M: f64 = 1e-3;
+/// Most that fingertips which lean over the edge of an object may press it down, as a part of their push times friction:
+/// at 1 the object jams.
+const MOST_JAMMING: f64 = 0.5;
+
+/// A round object that rests where it may be pushed, and two fingers that fit it.
+pub(in crate::action) struct Pushable<'a> {
+    pub(in crate::action) object: ObjectId,
+    pub(in crate::action) on: SurfaceId,
+    pub(in crate::action) surface: &'a SupportSurface,
+    pub(super) pose: &'a Isometry3<f64>,
+    pub(super) gap_m: f64,
+    pub(super) contact: RimContact,
+    disc: SlidingDisc,
+    heights: PushHeights,
+}
+
+impl<'a> Pushable<'a> {
+    /// The object as it rests in `from`.
+    ///
+    /// # Errors
+    /// [`Infeasible::NoContact`] for what cannot be pushed, [`Infeasible::OffSupport`] for what does not rest.
+    pub(in crate::action) fn new<M: Manipulator>(
+        m: &'a Tabletop<M>,
+        from: &'a TabletopState<M>,
+        object: ObjectId,
+    ) -> Result<Self, Infeasible> {
+        let settings = &m.settings().push;
+        let movable = m.movable(object).filter(|o| o.is_pushable).ok_or(Infeasible::NoContact)?;
+        let disc = disc(movable).ok_or(Infeasible::NoContact)?;
+        let on = from.mode.support_of(object).ok_or(Infeasible::OffSupport)?;
+        let surface = m.surface(on).ok_or(Infeasible::OffSupport)?;
+        let pose = from.object(object).ok_or(Infeasible::NoContact)?;
+        let hand = m.manipulator().hand();
+        let gap_m = disc.finger_gap_m(settings.gap_m);
+        let tips = Fingertips { beyond_tool: hand.tip_beyond_tool_m(gap_m), half_width: hand.tip_half_width_m() };
+        let contact = RimContact::new(disc.radius_m, gap_m, tips).map_err(|_| Infeasible::NoContact)?;
+        let heights = PushHeights { tips: settings.fingertip_clearance_m, top: 2.0 * movable.half_height_m };
+        if heights.tips >= heights.top {
+            // The fingertips would pass above it.
+            return Err(Infeasible::NoContact);
+        }
+        Ok(Self { object, on, surface, pose, gap_m, contact, disc, heights })
+    }
+
+    /// What the push needs, if it holds.
+    ///
+    /// # Errors
+    /// [`Infeasible::UnstablePush`].
+    pub(super) fn steady<M: Manipulator>(&self, m: &Tabletop<M>) -> Result<SteadyPush, Infeasible> {
+        let (error_m, has_n) = (m.settings().push.position_error_m, m.manipulator().push_force_n());
+        self.disc.steady_push(self.gap_m, error_m, has_n).map_err(|_| Infeasible::UnstablePush)
+    }
+
+    /// How far inside an edge it may stop that a push goes to, least and most, metres.
+    pub(in crate::action) fn edge_distances_m<M: Manipulator>(&self, m: &Tabletop<M>) -> [f64; 2] {
+        let settings = m.settings();
+        settings.push.edge_distance_m.map(|distance| distance.max(settings.safety.edge_margin_m))
+    }
+
+    /// The largest curvature of its way at which it stays at the fingers, 1/m.
+    pub(super) fn max_curvature(&self) -> f64 {
+        self.disc.max_curvature(self.gap_m).unwrap_or(0.0)
+    }
+
+    /// Over which point of the floor its centre is.
+    pub(in crate::action) fn center(&self) -> Point2<f64> {
+        Point2::new(self.pose.translation.x, self.pose.translation.y)
+    }
+
+    /// How far behind the centre the tool stands to push with this lean, and how high, world z; metres. `None` where such a
+    /// hand does not push, but passes above the object or presses it down.
+    pub(in crate::action) fn tool_place(&self, lean: f64) -> Option<(f64, f64)> {
+        let stance = HandStance { lean, ..HandStance::default() };
+        let jams = self.disc.table.coefficient() * self.contact.pressing_down(&self.heights, &stance);
+        let setback_m = self.contact.setback(&self.heights, &stance).ok().filter(|_| jams <= MOST_JAMMING)?;
+        Some((setback_m, self.surface.height() + self.contact.tool_height(&self.heights, &stance)))
+    }
+
+    /// The hand behind the object to push it along `direction`.
+    fn at_contact(&self, direction: &Unit<Vector2<f64>>, stance: &HandStance) -> Option<Isometry3<f64>> {
+        self.tool_place(stance.lean)?;
+        let height_m = self.surface.height();
+        self.contact.world_from_tool(&self.center(), direction, height_m, &self.heights, stance).ok()
+    }
+}
+
+/// A movable object as a disc that slides; `None` if it is not round or a number of it cannot be used.
+fn disc(movable: &Movable) -> Option<SlidingDisc> {
+    Some(SlidingDisc {
+        radius_m: movable.round_radius_m?,
+        mass_kg: movable.mass_kg,
+        table: Friction::new(movable.friction.table).ok()?,
+        fingers: Friction::new(movable.friction.fingers).ok()?,
+    })
+}
+
+/// A hand behind an object with room around it.
+pub(super) struct HandPlace {
+    pub(super) at_contact: Isometry3<f64>,
+    /// Unit vectors of the world: ahead along the push, and where the hand points.
+    pub(super) ahead: Vector3<f64>,
+    pub(super) pointing: Vector3<f64>,
+    /// How far behind the contact it comes down, and how long it comes straight down before.
+    pub(super) standoff_m: LengthRange,
+    pub(super) approach_m: LengthRange,
+}
+
+impl HandPlace {
+    /// The hand in this stance, as far as hand and object alone can tell.
+    ///
+    /// # Errors
+    /// [`Infeasible::NoContact`] where such a hand does not push, [`Infeasible::Blocked`].
+    pub(super) fn new<M: Manipulator>(
+        m: &Tabletop<M>,
+        pushable: &Pushable<'_>,
+        direction: &Unit<Vector2<f64>>,
+        stance: &HandStance,
+        probe: &Probe<'_, M>,
+    ) -> Result<Self, Infeasible> {
+        let settings = m.settings();
+        let at_contact = pushable.at_contact(direction, stance).ok_or(Infeasible::NoContact)?;
+        let ahead = Vector3::new(direction.x, direction.y, 0.0);
+        let pointing = at_contact.rotation * Vector3::x();
+        probe.check_hand(&at_contact, &contacts(pushable.object)).map_err(Infeasible::Blocked)?;
+        // Nothing but the fingertips is at the object: with all of the hand beside it, the hand is clear of it.
+        let before_m = settings.safety.contact_margin_m + BEFORE_CONTACT_M;
+        let none = Contacts::default();
+        let why =
+            |at: &Isometry3<f64>| probe.check_hand(at, &none).err().map_or(Infeasible::NoContact, Infeasible::Blocked);
+        let before = moved(&at_contact, &-ahead, before_m);
+        if !probe.is_hand_clear(&before, &none, 0) {
+            return Err(why(&before));
+        }
+        let is_clear = |at: &Isometry3<f64>, care| probe.is_hand_clear(at, &none, care);
+        let standoff_m =
+            room_for_hand(m, settings.push.standoff_m, &at_contact, &-ahead, is_clear).map_err(|at| why(&at))?;
+        let behind = moved(&at_contact, &-ahead, standoff_m.wanted_m());
+        let approach_m =
+            room_for_hand(m, settings.push.approach_m, &behind, &-pointing, is_clear).map_err(|at| why(&at))?;
+        Ok(Self { at_contact, ahead, pointing, standoff_m, approach_m })
+    }
+}
