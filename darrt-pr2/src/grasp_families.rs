@@ -209,7 +209,8 @@ fn round_end(shape: &ShapeSpec) -> f64 {
 
 /// How far fingertips reach below the top of an object `height` metres high: as far as wanted, or as the object is high.
 fn depth_from_above(insertion: LengthRange, height: f64) -> Result<f64, PrimitiveError> {
-    let most = height - ABOVE_SUPPORT;
+    // Rounded to a nanometre: the number is shown.
+    let most = ((height - ABOVE_SUPPORT) * 1e9).round() / 1e9;
     if insertion.least_m <= most {
         return Ok(insertion.wanted_m.min(most));
     }

@@ -83,7 +83,7 @@ pub struct Support {
 pub struct PushSettings {
     /// Gap between the fingers; less for an object that is too narrow for it.
     pub gap_m: f64,
-    /// Height of the fingertips above the surface.
+    /// Least height of the fingertips above the surface; a third of the object's height, if that is more.
     pub fingertip_clearance_m: f64,
     /// Leans of the hand from the vertical in the order in which they are tried, radians in `[0, MAX_LEAN]`.
     pub leans_rad: Vec<f64>,

@@ -152,7 +152,7 @@ fn pushes_are_long_enough_to_settle_unless_their_end_is_near() {
         fingers: Friction::new(0.5).unwrap(),
     };
     let settle_m = disc.steady_push(0.04, 0.015, f64::INFINITY).unwrap().settle_m;
-    assert!((0.05..0.1).contains(&settle_m), "{settle_m}");
+    assert!((0.05..0.2).contains(&settle_m), "{settle_m}");
     let mut cut = 0;
     for seed in 0..64 {
         // The blue tin is in the way, 0.28 m ahead of the place where the red one would touch it.

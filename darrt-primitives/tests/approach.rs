@@ -23,8 +23,10 @@ fn tool(m: &Table, state: &TableState) -> Vector3<f64> {
 /// Metres between where the hand is and where it comes to push or to grasp, after a law: no more than the travel.
 fn gap_m(m: &Table, from: &TableState, instances: &Instances<Table>, bound_m: f64) -> f64 {
     let last = instances.last().unwrap();
-    // The hand comes down a little behind what it pushes: the contact is the next waypoint.
-    let t = if last.label == label::PUSH { last.motion.knots()[1] } else { 0.0 };
+    // The hand comes down a little behind what it pushes: the contact is the last waypoint where that has not moved yet.
+    let rests = |t: f64| last.at(m, t, from).object(object(0)) == from.object(object(0));
+    let knots = last.motion.knots();
+    let t = if last.label == label::PUSH { knots.iter().copied().rfind(|t| rests(*t)).unwrap() } else { 0.0 };
     let travel_m: f64 = instances.iter().map(|instance| instance.motion.length()).sum();
     assert!(bound_m <= travel_m, "{bound_m} {travel_m}");
     (tool(m, &last.at(m, t, from)) - tool(m, from)).norm()

@@ -25,7 +25,7 @@ pub enum EdgeRule {
 pub struct Push {
     /// Gap between the two fingers, 0 to 0.09; less where an object is too narrow for it.
     pub gap_m: f64,
-    /// Height of the fingertips above the surface.
+    /// Least height of the fingertips above the surface; a third of the object's height, if that is more.
     pub fingertip_clearance_m: f64,
     /// Leans of the hand from the vertical, degrees, 0 to 75: the fingertips ahead, the wrist trailing. Tried in this order.
     pub leans_deg: Vec<f64>,

@@ -187,6 +187,6 @@ mod tests {
         assert_eq!(enters(&plate, &Point3::new(0.15, 0.0, 0.013), &down, 0.1), None);
         let (gone, normal) = enters(&plate, &Point3::new(-0.2, 0.0, 0.0), &Vector3::x(), 0.1).unwrap();
         assert!((gone - 0.06).abs() < 1e-6 && (normal + Vector3::x()).norm() < 1e-6);
-        assert_eq!(enters(&plate, &Point3::origin(), &down, 0.1).unwrap().0, 0.0);
+        assert_eq!(enters(&plate, &Point3::new(0.0, 0.0, 0.004), &down, 0.1).unwrap().0, 0.0);
     }
 }

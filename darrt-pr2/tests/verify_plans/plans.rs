@@ -46,8 +46,8 @@ fn problem(name: &str, base: [f64; 3], q: ArmConfiguration, plate: [f64; 2], goa
     problem.robot.posture = None;
     problem.robot.joints = Some(q.to_vec());
     problem.objects[0].at = plate;
-    // It stands where the elbow of these simple motions goes.
-    problem.obstacles.retain(|obstacle| obstacle.name != "tin");
+    // They stand where the elbow of these simple motions goes.
+    problem.obstacles.retain(|obstacle| !["tin", "mug"].contains(&obstacle.name.as_str()));
     problem.goal = Goal { objects: vec![goal_on_table(goal)] };
     problem
 }
@@ -200,8 +200,8 @@ pub(crate) const OVERHEAD: Lift = Lift {
     problem: "bowl",
     carrier: "shelf",
     at: [-1.2, 2.29],
-    base: [-1.61, 1.5, 2.27],
-    grasp: [-1.291_359, -0.179_906, -2.05, -0.563_681, -1.068_934, -1.479_549, 2.769_651],
+    base: [-1.299_591, 1.625_02, 1.849_774],
+    grasp: [-0.469_971, 0.106_428, -1.137_863, -0.919_746, -1.928_431, -1.841_546, 2.236_706],
     gaps: [0.05, 0.005],
     straddles: true,
 };

@@ -13,7 +13,7 @@
 //! | abs(fy) <= 2 F | the pad on one side would lift off |
 //! | abs(tz) / (F l / 2) + abs(tx) / (F w / 2) <= 1 | the pressure shifts within the l by w patch until a quarter of a pad has lifted off |
 //!
-//! all with [`SAFETY`] times the weight. The last condition allows half of the couple F l of two pads that touch at opposite
+//! all with [`SAFETY`] times the weight, and with the object leaning by up to [`FLUSH_RAD`]. The last condition allows half of the couple F l of two pads that touch at opposite
 //! ends only. The mean distance c of the pressure from its middle is
 //! [`PressureConstant`].
 //!
@@ -185,9 +185,12 @@ pub fn hold(tool_from_object: &Isometry3<f64>, contact: &PadContact, load: &Load
     let mut max_tilt_rad = PI;
     for (cause, needs_n) in Pull::NEEDS {
         let upright_n = needs_n(&pull, &down);
-        weak(cause, upright_n)?;
         let [a, b] = sideways.map(|direction| needs_n(&pull, &direction));
-        max_tilt_rad = max_tilt_rad.min(largest_tilt(upright_n, a.hypot(b), has_n));
+        let sideways_n = a.hypot(b);
+        weak(cause, upright_n)?;
+        // A hand that is off by a degree must hold it too.
+        weak(cause, FLUSH_RAD.cos() * upright_n + FLUSH_RAD.sin() * sideways_n)?;
+        max_tilt_rad = max_tilt_rad.min(largest_tilt(upright_n, sideways_n, has_n));
     }
     Ok(Hold { max_tilt_rad })
 }

@@ -19,6 +19,7 @@ fn brick(gap: f64) -> Obstacle {
 /// The push with a second plate standing about.
 fn with_saucer(at: [f64; 2]) -> PlanFile {
     let mut plan = plans::push();
+    plan.problem.obstacles.retain(|obstacle| obstacle.name != "big bowl");
     let mut saucer = plan.problem.objects[0].clone();
     saucer.name = "saucer".to_owned();
     saucer.at = at;

@@ -19,6 +19,9 @@ use crate::tabletop::{Movable, Tabletop, TabletopState};
 /// Just before the contact the hand, which need not touch the object with anything but its fingertips, is this much farther
 /// from it than the contact margin, metres.
 const BEFORE_CONTACT_M: f64 = 1e-3;
+/// The fingertips push no lower than at this part of an object's height. So the palm above them clears plates that are 30 mm
+/// high instead of 23, and the tips keep more room above the table.
+const TIPS_AT: f64 = 1.0 / 3.0;
 /// Most that fingertips which lean over the edge of an object may press it down, as a part of their push times friction:
 /// at 1 the object jams.
 const MOST_JAMMING: f64 = 0.5;
@@ -55,7 +58,8 @@ impl<'a> Pushable<'a> {
         let gap_m = disc.finger_gap_m(settings.gap_m);
         let tips = Fingertips { beyond_tool: hand.tip_beyond_tool_m(gap_m), half_width: hand.tip_half_width_m() };
         let contact = RimContact::new(disc.radius_m, gap_m, tips).map_err(|_| Infeasible::NoContact)?;
-        let heights = PushHeights { tips: settings.fingertip_clearance_m, top: 2.0 * movable.half_height_m };
+        let top = 2.0 * movable.half_height_m;
+        let heights = PushHeights { tips: settings.fingertip_clearance_m.max(TIPS_AT * top), top };
         if heights.tips >= heights.top {
             // The fingertips would pass above it.
             return Err(Infeasible::NoContact);

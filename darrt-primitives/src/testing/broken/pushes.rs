@@ -80,7 +80,8 @@ pub(super) fn cases() -> Vec<Case> {
             TURN,
             || {
                 let (scene, start, way) = push()?;
-                let arc = Slide::along_arc(start, &(start.translation.vector + way).xy(), 2.5);
+                // A quarter of the way: nearly half a turn in less than its own width.
+                let arc = Slide::along_arc(start, &(start.translation.vector + way / 4.0).xy(), 2.5);
                 let moves = move |_: &_, _, state: &mut _| {
                     if let Some(pose) = pose_mut(state, object(0)) {
                         *pose = arc.at((pose.translation.vector - start.translation.vector).norm() / way.norm());
