@@ -29,7 +29,7 @@ pub mod upper_face;
 pub mod validate;
 pub mod world;
 
-pub use builtin::{builtin, builtin_names, builtin_text, everyday_names, further_names};
+pub use builtin::{builtin, builtin_names, builtin_text, everyday_names, further_names, hopeless_names};
 pub use error::ProblemFileError;
 pub use goal::{Goal, GoalState, GoalTarget, ObjectGoal, Region};
 pub use grasps::{GraspFamily, OverheadGrasp, RimGrasp, SideGrasp};

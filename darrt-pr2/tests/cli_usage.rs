@@ -103,10 +103,10 @@ fn bad_numbers_are_answered_with_their_bound() {
 
 #[test]
 fn problems_are_listed_and_printed_to_be_copied() {
-    use darrt_pr2::problem_file::{builtin_names, everyday_names, further_names};
+    use darrt_pr2::problem_file::{builtin_names, everyday_names, further_names, hopeless_names};
     let folder = tempfile::tempdir().unwrap();
     let list = stdout(&darrt(folder.path(), &["problems"]));
-    for name in builtin_names().into_iter().chain(further_names()).chain(everyday_names()) {
+    for name in builtin_names().into_iter().chain(further_names()).chain(everyday_names()).chain(hopeless_names()) {
         assert!(list.contains(name), "{name}");
         let text = stdout(&darrt(folder.path(), &["problems", "--print", name]));
         assert_eq!(text, darrt_pr2::problem_file::builtin_text(name).unwrap());

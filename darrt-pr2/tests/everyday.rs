@@ -4,7 +4,7 @@ use darrt_core::budget::Cancel;
 use darrt_core::observe::Silent;
 use darrt_pr2::plan_file::{PlanFile, Step, Waypoint};
 use darrt_pr2::planning::{PlanRequest, plan};
-use darrt_pr2::problem_file::{PrimitiveName, builtin, everyday_names};
+use darrt_pr2::problem_file::{PrimitiveName, builtin, everyday_names, hopeless_names};
 
 /// The verified plan of a problem, within a number of iterations that no seed tried has needed.
 fn planned(name: &str) -> PlanFile {
@@ -32,4 +32,16 @@ fn the_plate_is_pushed_over_the_seam() {
         step.primitive == PrimitiveName::Push && matches!(ends, [Some(from), Some(to)] if from > 0.0 && to < 0.0)
     };
     assert!(plan.steps.iter().any(crosses), "no push goes over the seam");
+}
+
+#[test]
+fn what_has_no_plan_is_refused_at_once_with_the_reason() {
+    let said = hopeless_names().map(|name| {
+        let request = PlanRequest::new(builtin(name).unwrap(), 0);
+        plan(&request, &Cancel::new(), &mut Silent).unwrap_err().to_string()
+    });
+    let reasons = ["it weighs 3 kg, the arm carries 1.8", "N of grip, the gripper has 50"];
+    for (said, reason) in said.iter().zip(reasons) {
+        assert!(said.contains("no grasp holds it") && said.contains(reason), "{said}");
+    }
 }

@@ -255,7 +255,7 @@ fn only_what_may_be_pushed_is_pushed() {
 }
 
 /// Just above where the tool is while it pushes on the left table, metres.
-const HAND_WHILE_PUSHING_M: f64 = 0.738;
+const HAND_WHILE_PUSHING_M: f64 = 0.767;
 
 /// An arm that follows a line of its tool only between these x, but higher up also before the first of them.
 fn near_between<const FROM_MM: i16, const TO_MM: i16>(

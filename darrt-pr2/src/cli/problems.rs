@@ -6,7 +6,9 @@ use super::args::ProblemsOptions;
 use super::exit::{Exit, Failure};
 use super::output::Output;
 use super::table;
-use crate::problem_file::{ProblemFile, builtin, builtin_names, builtin_text, everyday_names, further_names};
+use crate::problem_file::{
+    ProblemFile, builtin, builtin_names, builtin_text, everyday_names, further_names, hopeless_names,
+};
 
 /// Width of the table in characters.
 const WIDTH: u16 = 100;
@@ -31,11 +33,12 @@ pub(super) fn run(options: &ProblemsOptions, output: &mut Output) -> Result<Exit
 }
 
 /// Headings, and the names under each.
-fn groups() -> [(&'static str, Vec<&'static str>); 3] {
+fn groups() -> [(&'static str, Vec<&'static str>); 4] {
     [
         ("The paper's problems", builtin_names().to_vec()),
         ("Two tables, several objects", further_names().to_vec()),
         ("Everyday problems, each with one thing that is easy to get wrong", everyday_names().to_vec()),
+        ("Without a plan, and the answer says why", hopeless_names().to_vec()),
     ]
 }
 

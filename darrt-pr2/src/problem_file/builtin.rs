@@ -41,6 +41,17 @@ const EVERYDAY: [(&str, &str); 13] = [
     ("low-plank", include_str!("../../scenes/everyday/low-plank.toml")),
 ];
 
+/// Everyday problems without a plan, for which the answer says why.
+const HOPELESS: [(&str, &str); 2] = [
+    ("heavy-plate", include_str!("../../scenes/everyday/heavy-plate.toml")),
+    ("slippery-fingers", include_str!("../../scenes/everyday/slippery-fingers.toml")),
+];
+
+/// The names of the embedded problems that have no plan.
+pub fn hopeless_names() -> [&'static str; 2] {
+    HOPELESS.map(|(name, _)| name)
+}
+
 /// The names of the embedded everyday problems.
 pub fn everyday_names() -> [&'static str; 13] {
     EVERYDAY.map(|(name, _)| name)
@@ -88,12 +99,17 @@ pub(super) fn unknown(name: &str) -> ProblemFileError {
 }
 
 fn all_names() -> impl Iterator<Item = &'static str> {
-    builtin_names().into_iter().chain(further_names()).chain(everyday_names())
+    builtin_names().into_iter().chain(further_names()).chain(everyday_names()).chain(hopeless_names())
 }
 
 fn find(name: &str) -> Option<(&'static str, &'static str)> {
     let wanted = folded(name);
-    PROBLEMS.into_iter().chain(FURTHER).chain(EVERYDAY).find(|(candidate, _)| folded(candidate) == wanted)
+    PROBLEMS
+        .into_iter()
+        .chain(FURTHER)
+        .chain(EVERYDAY)
+        .chain(HOPELESS)
+        .find(|(candidate, _)| folded(candidate) == wanted)
 }
 
 /// Letters and digits only, in lower case: what the spellings of one name have in common.

@@ -30,7 +30,7 @@ fn pushes_go_as_pushes_go() {
     about(&behind, "r_gripper", PLATE);
     refused(plans::push(), 2, K::Push, |plan| from_here_on(plan, 2, 8, shift(0.001, 0.0, 0.0)));
     refused(plans::push(), 2, K::Push, |plan| from_here_on(plan, 2, 8, shift(0.0, 0.0, 1e-4)));
-    let turn = |at: &mut Waypoint| plate(at).quaternion = [0.0, 0.0, 0.01_f64.sin(), 0.01_f64.cos()];
+    let turn = |at: &mut Waypoint| plate(at).quaternion = [0.0, 0.0, 0.03_f64.sin(), 0.03_f64.cos()];
     refused(plans::push(), 2, K::Push, |plan| from_here_on(plan, 2, 8, turn));
     refused(plans::push(), 2, K::Push, |plan| plan.problem.objects[0].pushable = Some(false));
     // The surface ends before the push does, though the table does not.

@@ -63,7 +63,7 @@ fn what_need_not_be_near_keeps_the_least_margin() {
 fn what_must_be_near_keeps_a_margin_of_its_own() {
     let plan = plans::push();
     let intended = verify(&plan).unwrap().smallest_intended.unwrap();
-    assert!(intended.distance_m < 0.0051, "the fingertips pass the table: {intended:?}");
+    assert!(intended.distance_m < 0.0055, "the fingertips pass the table: {intended:?}");
     let strict = |plan: &mut PlanFile, contact_margin_m| {
         let safety = &mut plan.problem.safety;
         (safety.least_margin_m, safety.contact_margin_m) = (0.015, contact_margin_m);
