@@ -35,6 +35,8 @@ use std::fmt::{self, Debug};
 
 pub mod distance;
 pub mod domain;
+pub mod everything;
+mod feed;
 pub mod goal;
 pub mod motion;
 pub mod nearest;
@@ -44,9 +46,12 @@ pub mod primitive;
 pub mod sampler;
 pub mod space;
 pub mod validity;
+pub mod verifier;
+pub mod watch;
 
-pub use distance::{check_distance, check_lower_bound, check_not_above};
+pub use distance::{DistanceClaims, check_distance, check_lower_bound, check_metric, check_not_above};
 pub use domain::check_domain;
+pub use everything::{Effort, Report, Subjects, check_everything, check_thoroughly};
 pub use goal::check_goal;
 pub use motion::{MotionClaims, check_instance, check_motion};
 pub use nearest::check_nearest;
@@ -54,8 +59,10 @@ pub use partial::check_partial;
 pub use planner::{check_accounts, check_cancel, check_planner};
 pub use primitive::{PrimitiveClaims, Tried, check_contacts, check_primitive, try_primitive};
 pub use sampler::{check_sampler, check_sampler_covers};
-pub use space::{SpaceClaims, check_component_space, check_covering};
-pub use validity::{ValidityClaims, check_against_oracle, check_enlarged, check_validity};
+pub use space::{SpaceClaims, check_component_space, check_covering, check_space_covers};
+pub use validity::{ValidityClaims, check_against_oracle, check_by_oracle, check_enlarged, check_validity};
+pub use verifier::{Judged, Tampered, check_verifier};
+pub use watch::{or_abandon, with_patience};
 
 /// A law that does not hold, with everything needed to see why and to see it again.
 #[derive(Debug, Clone, PartialEq)]
@@ -160,7 +167,8 @@ pub fn name_of(law: &'static str) -> &'static str {
 
 /// Every law that the kit knows.
 pub fn all() -> impl Iterator<Item = &'static str> {
-    let groups: [&[&str]; 11] = [
+    let groups: [&[&str]; 13] = [
+        watch::LAWS,
         space::LAWS,
         domain::LAWS,
         partial::LAWS,
@@ -172,6 +180,7 @@ pub fn all() -> impl Iterator<Item = &'static str> {
         goal::LAWS,
         sampler::LAWS,
         planner::LAWS,
+        verifier::LAWS,
     ];
     groups.into_iter().flatten().copied()
 }
@@ -180,6 +189,16 @@ pub fn all() -> impl Iterator<Item = &'static str> {
 fn identical<T: PartialEq + Debug>(law: &'static str, found: &T, against: &T) -> Result<(), Broken> {
     let (left, right) = (format!("{found:?}"), format!("{against:?}"));
     if found == against && left == right { Ok(()) } else { Err(Broken::new(law, left, right)) }
+}
+
+/// Equal, or printed alike: two values that are both NaN in the same place agree, so that what is wrong with them is told by
+/// the law that they break and not by one about repetition.
+fn alike<T: PartialEq + Debug>(law: &'static str, found: &T, against: &T) -> Result<(), Broken> {
+    if found == against {
+        return Ok(());
+    }
+    let (left, right) = (format!("{found:?}"), format!("{against:?}"));
+    if left == right { Ok(()) } else { Err(Broken::new(law, left, right)) }
 }
 
 /// Equal by `==`; a value that is not equal to itself (NaN) fails. For laws of your own.

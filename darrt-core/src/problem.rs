@@ -48,6 +48,10 @@ impl<D: Domain> Verifier<D> for Unjudged {
     }
 }
 
+/// Goal, primitives, validity and verifier.
+pub(crate) type SharedParts<D> =
+    (Arc<dyn Goal<D>>, Arc<[Box<dyn Primitive<D>>]>, Arc<dyn Validity<D>>, Arc<dyn Verifier<D>>);
+
 /// The parts of a [`Problem`], by name.
 pub struct Parts<D: Domain> {
     /// M.
@@ -73,6 +77,12 @@ impl<D: Domain> Problem<D> {
     /// primitives share a name.
     pub fn new(parts: Parts<D>) -> Result<Self, Error> {
         let Parts { domain, start, goal, primitives, validity, verifier } = parts;
+        Self::of_shared(Arc::new(domain), start, (goal.into(), primitives.into(), validity.into(), verifier.into()))
+    }
+
+    /// The same of parts that others hold as well.
+    pub(crate) fn of_shared(domain: Arc<D>, start: State<D>, shared: SharedParts<D>) -> Result<Self, Error> {
+        let (goal, primitives, validity, verifier) = shared;
         let objects = domain.objects().len();
         if objects > ComponentSet::MAX_OBJECTS {
             return Err(Error::TooManyObjects { found: objects, bound: ComponentSet::MAX_OBJECTS });
@@ -80,7 +90,7 @@ impl<D: Domain> Problem<D> {
         if start.objects.len() != objects {
             return Err(Error::ObjectCount { what: "the start", found: start.objects.len(), expected: objects });
         }
-        check_start_inside(&domain, &start)?;
+        check_start_inside(&*domain, &start)?;
         if primitives.is_empty() {
             return Err(Error::NoPrimitives);
         }
@@ -95,14 +105,7 @@ impl<D: Domain> Problem<D> {
                 target.check(&domain)?;
             }
         }
-        Ok(Self {
-            domain: Arc::new(domain),
-            start,
-            goal: goal.into(),
-            primitives: primitives.into(),
-            validity: validity.into(),
-            verifier: verifier.into(),
-        })
+        Ok(Self { domain, start, goal, primitives, validity, verifier })
     }
 
     /// A part of this problem for a search of its own: from `start` to `goal`, and whatever leads there is accepted. What is
@@ -120,6 +123,17 @@ impl<D: Domain> Problem<D> {
     /// G, to be shared.
     pub(crate) fn shared_goal(&self) -> Arc<dyn Goal<D>> {
         Arc::clone(&self.goal)
+    }
+
+    /// Goal, primitives, validity and verifier, to be shared.
+    pub(crate) fn shared_parts(&self) -> SharedParts<D> {
+        let (goal, primitives) = (Arc::clone(&self.goal), Arc::clone(&self.primitives));
+        (goal, primitives, Arc::clone(&self.validity), Arc::clone(&self.verifier))
+    }
+
+    /// M, to be shared.
+    pub fn shared_domain(&self) -> Arc<D> {
+        Arc::clone(&self.domain)
     }
 
     /// M.

@@ -8,6 +8,7 @@ use std::fmt::Debug;
 use rand::Rng;
 
 pub mod fixed;
+pub mod numbers;
 pub mod product;
 pub mod real_box;
 pub mod se2;
@@ -124,7 +125,7 @@ pub enum Place {
 /// ```
 pub trait ComponentSpace: Send + Sync {
     /// One configuration. Cheap to clone: it is copied into every node of the tree.
-    type Config: Clone + PartialEq + Debug + Send + Sync;
+    type Config: Clone + PartialEq + Debug + Send + Sync + 'static;
 
     /// Degrees of freedom.
     fn dimension(&self) -> usize;
@@ -161,6 +162,13 @@ pub trait ComponentSpace: Send + Sync {
     /// [`distance`](Self::distance): always as many, in the same order, of the same groups. They let the search for the
     /// nearest node pass over most of the tree. Default: none.
     fn shadow(&self, _q: &Self::Config, _mark: &mut dyn FnMut(u32, f64)) {}
+
+    /// Calls `visit` with every number that `q` is made of, always as many and in the same order. The laws put NaN, infinities
+    /// and the corners of the space there; nothing else asks. Default: the numbers of the types that
+    /// [`visit_known`](numbers::visit_known) knows. A space with a type of its own for configurations should show them.
+    fn numbers(&self, q: &mut Self::Config, visit: &mut dyn FnMut(&mut f64)) {
+        numbers::visit_known(q, visit);
+    }
 
     /// `target` in the groups of `groups`, `from` in all others.
     fn overlay(&self, from: &Self::Config, target: &Self::Config, groups: GroupSet) -> Self::Config {

@@ -103,7 +103,8 @@ impl<D: Domain> Solution<D> {
 }
 
 /// Replays every step at a fixed spacing and asks a [`Validity`] (preferably a slower, more exact one than
-/// the planner's) about each state.
+/// the planner's) about each state. Between two states nothing may travel farther than the motion says, every component stays
+/// in its space, and the mode is constant on the way.
 #[derive(Debug, Clone)]
 pub struct Replay<V> {
     oracle: V,
@@ -139,20 +140,59 @@ impl<V> Replay<V> {
         if entry != *before {
             return Err(refuse(0.0, format!("it starts at {entry:?}, but the step before ends at {before:?}")));
         }
-        let count = (length * step.until / self.spacing_m).ceil().clamp(1.0, 1e7);
-        let mut state = before.clone();
+        let count = (length * step.until / self.spacing_m).ceil().clamp(LEAST_LOOKS, 1e7);
+        let (mut state, mut last) = (before.clone(), before.clone());
+        let mut mode = None;
         let mut i = 0.0;
         while i < count {
             i += 1.0;
             let s = if i >= count { 1.0 } else { i / count };
             step.instance.motion.at_into(m, s * step.until, &mut state);
+            let bound = length * step.until / count;
+            if let Some(what) = impossible(m, &last, &state, bound) {
+                return Err(refuse(s, what));
+            }
+            // The mode changes at the ends of an instance only.
+            if s * step.until < 1.0 && *mode.get_or_insert_with(|| state.mode.clone()) != state.mode {
+                return Err(refuse(s, format!("the mode changes on the way, to {:?}", state.mode)));
+            }
             if let Some(what) = stray(m, before, &state, step.instance.moves) {
                 return Err(refuse(s, format!("{what} moves, but the step does not move it")));
             }
             self.oracle.check(m, &state, &step.instance.contacts).map_err(|blame| refuse(s, blame.to_string()))?;
+            last.clone_from(&state);
         }
         Ok(state)
     }
+}
+
+/// A step is looked at in at least so many states, however short it says it is.
+const LEAST_LOOKS: f64 = 64.0;
+/// Rounding that is forgiven between two looks, metres.
+const SLACK_M: f64 = 1e-6;
+
+/// What makes it impossible that `now` follows `last`, from which nothing travels farther than `bound_m` metres.
+fn impossible<D: Domain>(m: &D, last: &State<D>, now: &State<D>, bound_m: f64) -> Option<String> {
+    if now.objects.len() != last.objects.len() {
+        return Some(format!("{} objects, but there were {}", now.objects.len(), last.objects.len()));
+    }
+    let jumps = |metres: f64, id: ComponentId| {
+        // Also if it is no number.
+        let is_far = !(metres <= bound_m + SLACK_M);
+        is_far.then(|| format!("{} jumps {metres} m, {bound_m} m are possible", m.component_name(id)))
+    };
+    let outside =
+        |is_inside: bool, id: ComponentId| (!is_inside).then(|| format!("{} leaves its space", m.component_name(id)));
+    let robot = ComponentId::Robot;
+    let of_robot = jumps(m.robot().distance(&last.robot, &now.robot), robot)
+        .or_else(|| outside(m.robot().contains(&now.robot), robot));
+    let mut objects = m.objects().iter().zip(last.objects.iter().zip(&now.objects)).enumerate();
+    of_robot.or_else(|| {
+        objects.find_map(|(i, (space, (p, q)))| {
+            let id = ComponentId::Object(ObjectId::new(i));
+            jumps(space.distance(p, q), id).or_else(|| outside(space.contains(q), id))
+        })
+    })
 }
 
 /// A component that is not in `moves` and yet differs.

@@ -122,7 +122,7 @@ mod checks {
         let subsets = RobotOrObjects::new(0.5, 0.5).unwrap();
         let boxed: Box<dyn Sampler<D>> = Box::new(RandomSubset);
         let standing = Placed::new(Full, Place::OnSupport, 0.5).unwrap();
-        let edge = Placed::new(RandomSubset, Place::SupportEdge, 1.0).unwrap();
+        let edge = Placed::new(RandomSubset, Place::SupportEdge, 0.7).unwrap();
         let mut frontier = Frontier::new(RandomSubset, 0.5, 0.2).unwrap();
         let from = anywhere(m, mode);
         for i in 0..20 {

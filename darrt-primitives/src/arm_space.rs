@@ -144,6 +144,10 @@ impl<J: JointVector> ComponentSpace for ArmSpace<J> {
         }
     }
 
+    fn numbers(&self, q: &mut Configuration<J>, visit: &mut dyn FnMut(&mut f64)) {
+        q.base.iter_mut().chain(q.arm.as_mut()).for_each(visit);
+    }
+
     fn overlay(&self, from: &Configuration<J>, target: &Configuration<J>, groups: GroupSet) -> Configuration<J> {
         Configuration {
             base: if groups.covers(BASE) { target.base } else { from.base },

@@ -8,7 +8,13 @@ use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ObjectId, State};
 
 use super::partial::with_other_unnamed;
+use super::watch::{entering, watched};
 use super::{Broken, at_most, equal, measure};
+
+mod extremes;
+mod metric;
+
+pub use metric::{DistanceClaims, check_metric};
 
 /// Finite, not negative.
 pub const FINITE: &str = "distance.finite: distance is finite and not negative";
@@ -25,8 +31,16 @@ pub const LOWER_BOUND: &str = "distance.lower-bound: a distance that claims to b
 /// One distance below another.
 pub const NOT_ABOVE: &str = "distance.not-above: the shorter of two related distances is not above the longer";
 
+/// Small and large differences.
+pub const RESOLVES: &str = "distance.resolves: half-way to where the robot should be is nearer, and so are most objects close to their targets";
+/// Symmetric, where claimed.
+pub const SYMMETRIC: &str = "distance.symmetric: a distance that claims it is the same there and back";
+/// Triangle inequality, where claimed.
+pub const TRIANGLE: &str = "distance.triangle: a distance that claims it keeps the triangle inequality";
+
 /// The laws of this file.
-pub const LAWS: &[&str] = &[FINITE, PURE, ZERO_MET, POSITIVE, UNNAMED, LOWER_BOUND, NOT_ABOVE];
+pub const LAWS: &[&str] =
+    &[FINITE, PURE, ZERO_MET, POSITIVE, UNNAMED, LOWER_BOUND, NOT_ABOVE, RESOLVES, SYMMETRIC, TRIANGLE];
 
 /// Rounding that is forgiven, metres per metre.
 const SLACK: f64 = 1e-9;
@@ -43,7 +57,11 @@ pub fn check_distance<D: Domain>(
     to: &PartialState<D>,
     elsewhere: &State<D>,
 ) -> Result<(), Broken> {
-    let d = |s: &State<D>, t: &PartialState<D>| distance.distance(m, s, t);
+    let about = || format!("check_distance(&{from:?}, &{to:?}, &{elsewhere:?})");
+    let d = |s: &State<D>, t: &PartialState<D>| {
+        entering("distance");
+        distance.distance(m, s, t)
+    };
     let check = || {
         let metres = d(from, to);
         measure(FINITE, metres)?;
@@ -68,9 +86,11 @@ pub fn check_distance<D: Domain>(
                     .map_err(|broken| broken.of(m.component_name(ComponentId::Object(id))))?;
             }
         }
-        Ok(())
+        let trial = extremes::Trial { m, d: &d, from, to, elsewhere };
+        trial.run()?;
+        equal(PURE, &d(from, to), &metres).map_err(|broken| broken.of("asked again"))
     };
-    check().map_err(|broken| broken.replayed_by(|| format!("check_distance(&{from:?}, &{to:?}, &{elsewhere:?})")))
+    watched(&about, check).map_err(|broken| broken.replayed_by(about))
 }
 
 /// What may remain when everything is within tolerance of its target.

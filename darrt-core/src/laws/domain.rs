@@ -4,8 +4,10 @@ use crate::domain::Domain;
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ObjectId, State};
 
+use super::feed::{cornered, rng_of};
 use super::space::{SpaceClaims, check_component_space};
-use super::{Broken, at_most, equal, measure};
+use super::watch::{entering, watched};
+use super::{Broken, alike, at_most, equal, measure};
 
 /// As many objects in every state as in the domain.
 pub const COUNT: &str = "domain.count: a state has one configuration per object of the domain";
@@ -25,8 +27,17 @@ pub const MAY_GO_ON: &str = "domain.may-go-on: a motion may begin in the mode th
 /// Names tell the components apart.
 pub const NAMES: &str = "domain.names: every component has a name of its own";
 
+/// Pure.
+pub const PURE: &str = "domain.pure: the same question has the same answer, bit for bit, whenever it is asked";
+/// Hops there and back.
+pub const HOP_SYMMETRIC: &str = "domain.hop-symmetric: the hop from one object to another is as long as the hop back";
+/// Hops over a third.
+pub const HOP_TRIANGLE: &str =
+    "domain.hop-triangle: a hop is at most as long as two hops over a third object, and the way around that";
+
 /// The laws of this file.
-pub const LAWS: &[&str] = &[COUNT, REACH, REACH_FROM, POINT, REACH_AT_LEAST, HOP, MAY_GO_ON, NAMES];
+pub const LAWS: &[&str] =
+    &[COUNT, REACH, REACH_FROM, POINT, REACH_AT_LEAST, HOP, MAY_GO_ON, NAMES, PURE, HOP_SYMMETRIC, HOP_TRIANGLE];
 
 /// The laws of a domain and of all its component spaces, for three states, two parameters in `[0, 1]` and
 /// a seed.
@@ -41,11 +52,13 @@ pub fn check_domain<D: Domain>(
     seed: u64,
 ) -> Result<(), Broken> {
     let [a, b, c] = states;
+    let about = || format!("check_domain({claims:?}, [&{a:?}, &{b:?}, &{c:?}], {ts:?}, {seed})");
     let check = || {
         for state in states {
             equal(COUNT, &state.objects.len(), &m.objects().len())?;
             equal(MAY_GO_ON, &m.may_go_on(&state.mode, &state.mode), &true)?;
         }
+        let before = answers(m, a, b);
         let robot = check_component_space(m.robot(), claims, [&a.robot, &b.robot, &c.robot], ts, seed);
         robot.map_err(|broken| broken.of(m.component_name(ComponentId::Robot)))?;
         for (i, space) in m.objects().iter().enumerate() {
@@ -55,11 +68,79 @@ pub fn check_domain<D: Domain>(
                 .map_err(|broken| broken.of(m.component_name(ComponentId::Object(id))))?;
         }
         names(m)?;
-        travel(m, a, b)
+        travel(m, a, b)?;
+        hops(m, [a, b, c])?;
+        let mut rng = rng_of(&(a, b, seed));
+        let [x, y] = [a, b].map(|state| cornered(m, state, &mut rng));
+        let corner = travel(m, &x, &y).and_then(|()| hops(m, [&x, &y, c]));
+        corner.map_err(|broken| broken.of("in a corner"))?;
+        for ((call, was), (_, is)) in before.iter().zip(answers(m, a, b)) {
+            alike(PURE, &is, was).map_err(|broken| broken.of(call))?;
+        }
+        Ok(())
     };
-    check().map_err(|broken| {
-        broken.replayed_by(|| format!("check_domain({claims:?}, [&{a:?}, &{b:?}, &{c:?}], {ts:?}, {seed})"))
-    })
+    watched(&about, check).map_err(|broken| broken.replayed_by(about))
+}
+
+/// Answers to questions about two states, to be asked again later.
+pub(super) fn answers<D: Domain>(m: &D, a: &State<D>, b: &State<D>) -> Vec<(&'static str, String)> {
+    let mut all = Vec::new();
+    let mut say = |call: &'static str, answer: &dyn Fn() -> String| {
+        entering(call);
+        all.push((call, answer()));
+    };
+    say("objects", &|| format!("{:?}", m.objects().len()));
+    say("working_point", &|| format!("{:?}", m.working_point(&a.robot)));
+    say("component_name", &|| m.component_name(ComponentId::Robot).into_owned());
+    for (i, (p, q)) in a.objects.iter().zip(&b.objects).enumerate() {
+        let id = ObjectId::new(i);
+        say("component_name", &|| m.component_name(ComponentId::Object(id)).into_owned());
+        say("reach", &|| format!("{:?}", m.reach(&a.robot, id, q)));
+        say("object_point", &|| format!("{:?}", m.object_point(id, p)));
+        say("reach_at_least", &|| format!("{:?}", m.reach_at_least(id, 1.5)));
+        let next = ObjectId::new((i + 1) % a.objects.len());
+        if let Some(there) = b.object(next) {
+            say("hop", &|| format!("{:?}", m.hop((id, p), (next, there))));
+        }
+    }
+    all
+}
+
+/// Hops between three places, each of another object if there are as many.
+fn hops<D: Domain>(m: &D, [a, b, c]: [&State<D>; 3]) -> Result<(), Broken> {
+    let count = a.objects.len();
+    for i in 0..count {
+        let ids = [i, (i + 1) % count, (i + 2) % count].map(ObjectId::new);
+        let [Some(p), Some(q), Some(r)] = [(a, ids[0]), (b, ids[1]), (c, ids[2])].map(|(s, id)| s.object(id)) else {
+            continue;
+        };
+        let of = |broken: Broken| broken.of(m.component_name(ComponentId::Object(ids[1])));
+        let (there, back) = (m.hop((ids[0], p), (ids[1], q)), m.hop((ids[1], q), (ids[0], p)));
+        at_most(HOP_SYMMETRIC, (there - back).abs(), 0.0, SLACK * (1.0 + there)).map_err(|broken| {
+            of(Broken { left: format!("{there:?}").into(), right: format!("{back:?}").into(), ..broken })
+        })?;
+        // What acts on an object does so from somewhere around it; how far that is from its middle the domain says by its
+        // points, if it has any.
+        let points = [a, b, c].map(|s| m.working_point(&s.robot));
+        let is_told = points.iter().any(|point| *point != [0.0; 3]) || m.object_point(ids[1], q) != [0.0; 3];
+        if !is_told {
+            continue;
+        }
+        let around = [a, b, c].map(|s| {
+            let gap = apart(m.working_point(&s.robot), m.object_point(ids[1], q));
+            2.0 * (gap - m.reach(&s.robot, ids[1], q))
+        });
+        // Where the robot is inside the object nothing is told.
+        let is_inside = [a, b, c].iter().all(|s| m.reach(&s.robot, ids[1], q) <= 0.0);
+        if is_inside {
+            continue;
+        }
+        let around = around.into_iter().fold(0.0, f64::max);
+        let onwards = m.hop((ids[1], q), (ids[2], r));
+        let over = there + onwards + around;
+        at_most(HOP_TRIANGLE, m.hop((ids[0], p), (ids[2], r)), over, SLACK * (1.0 + over)).map_err(of)?;
+    }
+    Ok(())
 }
 
 fn names<D: Domain>(m: &D) -> Result<(), Broken> {

@@ -7,7 +7,10 @@ use crate::motion::{Instance, Motion};
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ObjectId, State};
 
-use super::{Broken, at_most, ensure, equal, measure};
+use super::watch::{entering, watched};
+use super::{Broken, ensure, equal};
+
+mod looks;
 
 /// Length is a measure.
 pub const LENGTH: &str = "motion.length: length is finite and not negative";
@@ -27,8 +30,15 @@ pub const FRAME: &str = "motion.frame: a component that the instance does not na
 pub const NAMED: &str =
     "motion.named: `moves` and `object` name components of the domain, and the state keeps its objects";
 
+/// Numbers.
+pub const FINITE: &str = "motion.finite: every state of a motion is made of numbers";
+/// No jumps.
+pub const CONTINUOUS: &str = "motion.continuous: in a billionth of a thousandth of a motion nothing travels farther than a micrometre, however long it is";
+/// Knots.
+pub const KNOTS: &str = "motion.knots: knots ascend and lie in [0, 1]";
+
 /// The laws of this file.
-pub const LAWS: &[&str] = &[LENGTH, START, PURE, CLAMPED, TRAVEL, MODE, FRAME, NAMED];
+pub const LAWS: &[&str] = &[LENGTH, START, PURE, CLAMPED, TRAVEL, MODE, FRAME, NAMED, FINITE, CONTINUOUS, KNOTS];
 
 /// How far apart two states are: metres that the farthest point of any component travels between them.
 pub type Travel<'a, D> = &'a dyn Fn(&D, &State<D>, &State<D>) -> f64;
@@ -40,11 +50,14 @@ pub struct MotionClaims<'a, D: Domain> {
     pub travel: Travel<'a, D>,
     /// Rounding that is forgiven in the travel bound, metres.
     pub slack_m: f64,
+    /// At how many evenly spaced parameters a motion is looked at besides the given ones; half as many random ones come
+    /// on top, both sides of the ends and of the knots, and a search for jumps where it moves fastest.
+    pub looks: u32,
 }
 
 impl<D: Domain> Default for MotionClaims<'_, D> {
     fn default() -> Self {
-        Self { travel: &component_travel, slack_m: 1e-7 }
+        Self { travel: &component_travel, slack_m: 1e-7, looks: 64 }
     }
 }
 
@@ -68,8 +81,8 @@ pub fn component_travel<D: Domain>(m: &D, a: &State<D>, b: &State<D>) -> f64 {
     objects.fold(m.robot().distance(&a.robot, &b.robot), f64::max)
 }
 
-/// All laws of a motion that was propagated from `from`, looked at 0, 1 and the parameters `ts` in
-/// `[0, 1]`.
+/// All laws of a motion that was propagated from `from`, looked at 0, 1, the parameters `ts` in `[0, 1]`, and as densely as
+/// the claims say. Where the looks are that nobody asked for depends on `from` and `ts` alone.
 ///
 /// # Errors
 /// The first law that is [`Broken`], with its parameter.
@@ -80,38 +93,9 @@ pub fn check_motion<D: Domain>(
     ts: &[f64],
     claims: &MotionClaims<'_, D>,
 ) -> Result<(), Broken> {
-    let at = |t: f64, garbage: &State<D>| {
-        let mut out = garbage.clone();
-        motion.at_into(m, t, &mut out);
-        out
-    };
-    let check = || {
-        measure(LENGTH, motion.length())?;
-        let (start, end) = (at(0.0, from), at(1.0, from));
-        equal(START, &start, from).map_err(|broken| broken.at(0.0))?;
-        let mut between: Vec<f64> = ts.to_vec();
-        between.extend([0.0, 1.0]);
-        between.sort_by(f64::total_cmp);
-        let mut before: Option<(f64, State<D>)> = None;
-        for t in between {
-            let here = at(t, from);
-            // Whatever was written before, and in whatever order it is asked.
-            equal(PURE, &at(t, &end), &here).map_err(|broken| broken.at(t))?;
-            equal(NAMED, &here.objects.len(), &from.objects.len()).map_err(|broken| broken.at(t))?;
-            if let Some((t0, there)) = &before {
-                let bound = motion.length() * (t - t0);
-                at_most(TRAVEL, (claims.travel)(m, there, &here), bound, claims.slack_m)
-                    .map_err(|broken| broken.at(t))?;
-                if *t0 > 0.0 && t < 1.0 {
-                    equal(MODE, &here.mode, &there.mode).map_err(|broken| broken.at(t))?;
-                }
-            }
-            before = Some((t, here));
-        }
-        equal(CLAMPED, &at(-1.0, &end), &start).map_err(|broken| broken.at(-1.0))?;
-        equal(CLAMPED, &at(2.0, &start), &end).map_err(|broken| broken.at(2.0))
-    };
-    check().map_err(|broken| broken.replayed_by(|| format!("check_motion(&{motion:?}, &{from:?}, &{ts:?})")))
+    let about = || format!("check_motion(&{motion:?}, &{from:?}, &{ts:?})");
+    let trial = looks::Trial { m, motion, from, claims };
+    watched(&about, || trial.run(ts)).map_err(|broken| broken.replayed_by(about))
 }
 
 /// All laws of an instance that was propagated from `from`: those of its motion and the frame rule.
@@ -125,17 +109,20 @@ pub fn check_instance<D: Domain>(
     ts: &[f64],
     claims: &MotionClaims<'_, D>,
 ) -> Result<(), Broken> {
+    let about = || format!("check_instance(&{instance:?}, &{from:?}, &{ts:?})");
     let check = || {
         named(m, instance)?;
-        check_motion(m, &*instance.motion, from, ts, claims)?;
-        for t in ts.iter().copied().chain([0.0, 1.0]) {
+        check_motion(m, &*instance.motion, from, ts, claims)
+            .map_err(|broken| Broken { replay: Box::default(), ..broken })?;
+        for t in looks::all(&*instance.motion, from, ts, claims.looks) {
+            entering("at_into");
             frame(m, instance, from, &instance.at(m, t, from)).map_err(|broken| broken.at(t))?;
         }
         Ok(())
     };
-    check().map_err(|broken: Broken| {
+    watched(&about, check).map_err(|broken: Broken| {
         let broken = broken.of(format_args!("instance {:?}", instance.label));
-        broken.replayed_by(|| format!("check_instance(&{instance:?}, &{from:?}, &{ts:?})"))
+        broken.replayed_by(about)
     })
 }
 

@@ -4,13 +4,18 @@ use std::ops::ControlFlow;
 
 use crate::budget::{Budget, Cancel, Stop};
 use crate::domain::Domain;
+use crate::goal::Goal;
 use crate::observe::accounts::Accounts;
 use crate::observe::{Event, Observer, Silent};
+use crate::partial::PartialState;
+use crate::plan::Plan;
 use crate::problem::Problem;
 use crate::search::{Darrt, Strategy};
 use crate::solve::{Outcome, SolveOptions, solve};
 use crate::tree::Tree;
 
+use super::verifier::{Judged, check_verifier};
+use super::watch::{Pulse, entering, patience_s, watched, with_patience};
 use super::{Broken, ensure, equal};
 
 /// Edges replay.
@@ -29,15 +34,20 @@ pub const VERIFIED: &str = "planner.verified: a solution starts at the start, en
 /// Cancellation.
 pub const CANCEL: &str = "planner.cancel: after it is cancelled it ends within one extension per thread, and says so";
 
+/// A problem.
+pub const PROBLEM: &str =
+    "planner.problem: the parts make a problem: its start is valid, and its goal lies in the spaces";
+
 /// The laws of this file.
-pub const LAWS: &[&str] = &[REPLAY, VALID, SEEDED, THREADS, BALANCED, VERIFIED, CANCEL];
+pub const LAWS: &[&str] = &[PROBLEM, REPLAY, VALID, SEEDED, THREADS, BALANCED, VERIFIED, CANCEL];
 
 /// Iterations when the options set no limit.
 const ITERATIONS: u64 = 200;
 
 /// All laws of planning `problem` with `strategy`. Of the options, the seed, the limits on iterations
 /// (200 if there is none) and nodes, and the restarts count; time limit, threads and the cancel token do
-/// not, so nothing here depends on a clock.
+/// not, so nothing here depends on a clock. The solution, or else the way to the node with the most steps before it, is broken on
+/// purpose and shown to the verifier ([`check_verifier`]).
 ///
 /// # Errors
 /// The first law that is [`Broken`].
@@ -46,8 +56,9 @@ pub fn check_planner<D: Domain>(
     strategy: &Strategy<D>,
     options: &SolveOptions,
 ) -> Result<(), Broken> {
+    let about = || format!("check_planner({problem:?}, {strategy:?}, {options:?})");
     let check = || {
-        tree(problem, strategy, options)?;
+        let longest = tree(problem, strategy, options)?;
         let one = run(problem, strategy, options, 1);
         outcome(problem, &one)?;
         for threads in [2, 8] {
@@ -55,13 +66,62 @@ pub fn check_planner<D: Domain>(
                 .map_err(|broken| broken.of(format_args!("{threads} threads")))?;
         }
         let run = |options: &SolveOptions, observer: &mut dyn Observer| solve(problem, strategy, options, observer);
-        [1, 2].into_iter().try_for_each(|threads| check_cancel(&run, options, threads))
+        [1, 2].into_iter().try_for_each(|threads| check_cancel(&run, options, threads))?;
+        match &one.solution {
+            Some(solution) => judge(problem, problem.goal(), solution.plan(), options.seed),
+            None => judge_way(problem, longest.as_ref(), options.seed),
+        }
     };
-    check().map_err(|broken| broken.replayed_by(|| format!("check_planner({problem:?}, {strategy:?}, {options:?})")))
+    // One iteration may take longer than any single call of a primitive.
+    with_patience(PATIENCE_FACTOR * patience_s(), || watched(&about, check)).map_err(|broken| broken.replayed_by(about))
+}
+
+/// How much longer one iteration of the search, or the verification of one plan, may take than another call.
+const PATIENCE_FACTOR: f64 = 6.0;
+
+/// Breaks a plan in many ways, and shows what becomes of it to the verifier.
+fn judge<D: Domain>(problem: &Problem<D>, goal: &dyn Goal<D>, plan: &Plan<D>, seed: u64) -> Result<(), Broken> {
+    let judged = Judged {
+        domain: problem.domain(),
+        start: problem.start(),
+        goal,
+        validity: Some(problem.validity()),
+        verifier: problem.verifier(),
+    };
+    check_verifier(&judged, plan, seed).map(|_| ())
+}
+
+/// The same with a way through the tree, for the goal to be where it ends. What the verifier refuses as it is says nothing.
+fn judge_way<D: Domain>(problem: &Problem<D>, way: Option<&Plan<D>>, seed: u64) -> Result<(), Broken> {
+    let Some(plan) = way else { return Ok(()) };
+    let (m, end) = (problem.domain(), plan.end(problem.domain()));
+    let mode = end.mode.clone();
+    let target = PartialState::of_state(m, &end);
+    let goal = crate::goal::Region::<D>::new(
+        Box::new(move |m, state| state.mode == mode && target.is_met(m, state)),
+        Box::new(|_, _| None),
+    );
+    entering("verify");
+    if problem.verifier().verify(m, problem.start(), &goal, plan).is_err() {
+        return Ok(());
+    }
+    judge(problem, &goal, plan, seed)
+}
+
+/// Tells the watchdog of every event.
+struct Heart(Pulse);
+
+impl Observer for Heart {
+    fn on_event(&mut self, _: &Event<'_>) -> ControlFlow<()> {
+        self.0.beat("an iteration of the search");
+        ControlFlow::Continue(())
+    }
 }
 
 fn run<D: Domain>(problem: &Problem<D>, strategy: &Strategy<D>, options: &SolveOptions, threads: usize) -> Outcome<D> {
-    solve(problem, strategy, &timeless(options, threads), &mut Silent)
+    let mut heart = Heart(Pulse::of_this_thread());
+    heart.0.beat("an iteration of the search");
+    solve(problem, strategy, &timeless(options, threads), &mut heart)
 }
 
 /// The same options without a clock, with a cancel token of their own.
@@ -75,6 +135,7 @@ fn grow<'p, D: Domain>(problem: &'p Problem<D>, strategy: &'p Strategy<D>, optio
     let limit = options.budget.nodes.unwrap_or(usize::MAX);
     let mut darrt = Darrt::new(problem, strategy, options.seed, 0, limit);
     for _ in 0..options.budget.iterations.unwrap_or(ITERATIONS) {
+        entering("an iteration of the search");
         let step = darrt.step();
         if step.solution.is_some() || step.stop.is_some() {
             break;
@@ -83,7 +144,12 @@ fn grow<'p, D: Domain>(problem: &'p Problem<D>, strategy: &'p Strategy<D>, optio
     darrt
 }
 
-fn tree<D: Domain>(problem: &Problem<D>, strategy: &Strategy<D>, options: &SolveOptions) -> Result<(), Broken> {
+/// The laws of the tree. Returns the way to the node that has the most steps before it.
+fn tree<D: Domain>(
+    problem: &Problem<D>,
+    strategy: &Strategy<D>,
+    options: &SolveOptions,
+) -> Result<Option<Plan<D>>, Broken> {
     let m = problem.domain();
     let grown = grow(problem, strategy, options);
     let tree = grown.tree();
@@ -106,7 +172,13 @@ fn tree<D: Domain>(problem: &Problem<D>, strategy: &Strategy<D>, options: &Solve
     let again = grow(problem, strategy, options);
     same_tree(tree, again.tree())?;
     check_accounts(grown.accounts(), grown.iteration(), tree.len() as u64 - 1)?;
-    equal(SEEDED, again.accounts(), grown.accounts())
+    equal(SEEDED, again.accounts(), grown.accounts())?;
+    let ways = tree.iter().filter_map(|(id, _)| Plan::to_node(tree, id));
+    // The first of equally long ones.
+    Ok(ways.fold(None, |best: Option<Plan<D>>, way| match best {
+        Some(best) if best.steps().len() >= way.steps().len() => Some(best),
+        _ => Some(way),
+    }))
 }
 
 /// Every extension was counted once, in one bucket per primitive, and every added state is a node.
@@ -153,6 +225,7 @@ fn outcome<D: Domain>(problem: &Problem<D>, outcome: &Outcome<D>) -> Result<(), 
     equal(VERIFIED, plan.start(), problem.start())?;
     let end = plan.end(m);
     ensure(VERIFIED, problem.goal().is_satisfied(m, &end), || format!("{end:?}"), "a state in the goal")?;
+    entering("verify");
     let again = problem
         .verifier()
         .verify(m, problem.start(), problem.goal(), plan)
@@ -185,6 +258,7 @@ struct CancelAfter {
     is_cut_short: bool,
     /// Did an attempt end because its tree was full?
     is_full: bool,
+    pulse: Pulse,
 }
 
 impl CancelAfter {
@@ -193,6 +267,7 @@ impl CancelAfter {
 
 impl Observer for CancelAfter {
     fn on_event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        self.pulse.beat("an iteration of the search");
         match event {
             Event::Iteration { .. } => self.seen += 1,
             Event::AttemptEnded { stop, .. } => {
@@ -213,7 +288,7 @@ pub type Solver<'a, D> = &'a dyn Fn(&SolveOptions, &mut dyn Observer) -> Outcome
 /// # Errors
 /// [`CANCEL`] with the iterations that still came, or with the wrong reason.
 pub fn check_cancel<D: Domain>(solve: Solver<'_, D>, options: &SolveOptions, threads: usize) -> Result<(), Broken> {
-    let mut observer = CancelAfter::default();
+    let mut observer = CancelAfter { pulse: Pulse::of_this_thread(), ..CancelAfter::default() };
     let heard = timeless(options, threads);
     let outcome = solve(&heard, &mut observer);
     let most = CancelAfter::AT + threads as u64;

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use rand::RngExt;
+
 use crate::domain::Domain;
 use crate::motion::Instance;
 use crate::partial::PartialState;
@@ -9,16 +11,17 @@ use crate::primitive::{Infeasible, Instances, Primitive};
 use crate::random::{Purpose, stream};
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ObjectId, State};
-use crate::validity::{BlockKind, Validity};
+use crate::validity::{Blame, BlockKind, Validity};
 
+use super::feed::{cornered, rng_of, spoilt_states};
 use super::motion::{MotionClaims, check_instance};
 use super::partial::with_other_unnamed;
+use super::watch::{bounded, entering, guarded, watched};
 use super::{Broken, at_most, ensure, equal, measure};
 
-mod guard;
+mod at_most;
 mod progress;
 
-use guard::guarded;
 use progress::progress;
 
 /// No panic.
@@ -48,9 +51,29 @@ pub const PROGRESS: &str = "primitive.progress: a named object that moves ends n
 pub const TRUNCATED: &str = "primitive.truncated: where propagation is claimed to be cut anywhere, propagating to a state on the way ends there";
 /// Contacts.
 pub const CONTACTS: &str = "primitive.contacts: an instance allows the contact with the object that it manipulates";
+/// Moves at most.
+pub const MOVES: &str =
+    "primitive.moves: an instance moves at most the robot and the object that it names, whatever it declares";
+/// Harm.
+pub const HARM: &str = "primitive.harm: a named object that is at its target is still there at the end";
+/// Changes of mode.
+pub const AT_HAND: &str = "primitive.at-hand: the mode changes only where the robot can act on the object, or where motions may go on over it";
+/// Reversible.
+pub const REVERSIBLE: &str =
+    "primitive.reversible: what claims that it can be run backwards need not go anywhere else to bring its object back";
+/// Feasible now and then.
+pub const FEASIBLE: &str = "primitive.feasible: of a thousand calls in which it is useful one at least finds a way";
+/// Names.
+pub const NAME: &str = "primitive.name: a primitive has one name, which does not change";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
+    MOVES,
+    HARM,
+    AT_HAND,
+    REVERSIBLE,
+    FEASIBLE,
+    NAME,
     PANICS,
     ENDS,
     USEFUL_PURE,
@@ -79,6 +102,12 @@ pub struct PrimitiveClaims<'a, D: Domain> {
     /// A propagation towards a state on the way of the last instance ends there: claimed by primitives
     /// that go straight to their target, not by those that choose among several ways.
     pub truncates: bool,
+    /// What ends nearer to its target ends nearer by at least this many metres, or at the target.
+    pub least_m: f64,
+    /// Where the mode changes, the object is at most so far ([`Domain::reach`], metres).
+    pub hand_m: f64,
+    /// Instances may move objects that they do not name, a tray with what stands on it for example.
+    pub moves_others: bool,
     /// Why an end that is not nearer is progress all the same: true excuses it. For a grasp that lifts the
     /// object away from its target, say.
     pub excuse: Option<Excuse<'a, D>>,
@@ -95,6 +124,9 @@ impl<D: Domain> fmt::Debug for PrimitiveClaims<'_, D> {
             .field("max_draws", &self.max_draws)
             .field("max_instances", &self.max_instances)
             .field("truncates", &self.truncates)
+            .field("least_m", &self.least_m)
+            .field("hand_m", &self.hand_m)
+            .field("moves_others", &self.moves_others)
             .finish_non_exhaustive()
     }
 }
@@ -107,6 +139,9 @@ impl<D: Domain> Default for PrimitiveClaims<'_, D> {
             max_draws: 100_000,
             max_instances: 64,
             truncates: false,
+            least_m: 1e-4,
+            hand_m: 0.5,
+            moves_others: false,
             excuse: None,
         }
     }
@@ -159,46 +194,86 @@ pub fn try_primitive<D: Domain>(
     seed: u64,
     claims: &PrimitiveClaims<'_, D>,
 ) -> Result<Tried<D>, Broken> {
-    Trial { m, primitive, from, to, seed, claims }.run().map_err(|broken| {
-        let broken = broken.of(primitive.name());
-        broken.replayed_by(|| format!("check_primitive(&{}, &{from:?}, &{to:?}, {seed})", primitive.name()))
-    })
+    let name = primitive.name();
+    let about = || format!("check_primitive(&{name}, &{from:?}, &{to:?}, {seed})");
+    let trial = Trial { m, primitive, from, to, seed, claims };
+    watched(&about, || trial.run()).map_err(|broken| broken.of(name).replayed_by(about))
 }
 
-struct Trial<'a, D: Domain> {
+struct Trial<'a, 'c, D: Domain> {
     m: &'a D,
     primitive: &'a dyn Primitive<D>,
     from: &'a State<D>,
     to: &'a PartialState<D>,
     seed: u64,
-    claims: &'a PrimitiveClaims<'a, D>,
+    claims: &'a PrimitiveClaims<'c, D>,
 }
 
 type Propagated<D> = Result<Instances<D>, Infeasible>;
 
-impl<D: Domain> Trial<'_, D> {
+impl<D: Domain> Trial<'_, '_, D> {
     fn run(&self) -> Result<Tried<D>, Broken> {
         let (from_before, to_before) = (self.from.clone(), self.to.clone());
+        let name = self.primitive.name();
         let useful = self.usefulness()?;
+        self.extremes()?;
         let tried = if useful { self.propagation()? } else { Tried::NotUseful };
         equal(UNTOUCHED, self.from, &from_before)?;
         equal(UNTOUCHED, self.to, &to_before)?;
+        equal(NAME, &self.primitive.name(), &name)?;
         Ok(tried)
     }
 
     fn is_useful(&self, to: &PartialState<D>) -> Result<bool, Broken> {
-        guarded(PANICS, || self.primitive.useful(self.m, self.from, to))
+        self.is_useful_from(self.from, to)
+    }
+
+    fn is_useful_from(&self, from: &State<D>, to: &PartialState<D>) -> Result<bool, Broken> {
+        entering("useful");
+        guarded(PANICS, || self.primitive.useful(self.m, from, to))
     }
 
     fn approach(&self, to: &PartialState<D>) -> Result<Option<f64>, Broken> {
+        entering("approach");
         guarded(PANICS, || self.primitive.approach(self.m, self.from, to))
     }
 
     fn propagate(&self, to: &PartialState<D>, attempt: u64) -> Result<Propagated<D>, Broken> {
+        self.propagate_from(self.from, to, attempt)
+    }
+
+    fn propagate_from(&self, from: &State<D>, to: &PartialState<D>, attempt: u64) -> Result<Propagated<D>, Broken> {
         let rng = stream(self.seed, attempt, 0, Purpose::Extend);
-        guard::bounded(PANICS, ENDS, self.claims.max_draws, rng, |rng| {
-            self.primitive.propagate(self.m, self.from, to, rng)
-        })
+        entering("propagate");
+        bounded(PANICS, ENDS, self.claims.max_draws, rng, |rng| self.primitive.propagate(self.m, from, to, rng))
+    }
+
+    fn is_excused(&self, end: &State<D>) -> bool {
+        self.claims.excuse.is_some_and(|excuse| excuse(self.m, self.from, self.to, end))
+    }
+
+    /// Targets in the corners and targets that are no numbers: what is asked comes back, whatever it answers.
+    fn extremes(&self) -> Result<(), Broken> {
+        let mut rng = rng_of(&(self.from, self.to, self.seed));
+        let corner = cornered(self.m, self.from, &mut rng);
+        let near = self.from.clone();
+        let spoilt = spoilt_states(self.m, &corner);
+        let strange = rng.random_range(0..spoilt.len().max(1));
+        let strange = spoilt.into_iter().nth(strange).map(|spoilt| spoilt.state);
+        for state in [Some(corner), Some(near), strange].into_iter().flatten() {
+            let target = PartialState::of_state(self.m, &state);
+            // Of the robot alone, of the objects alone, and of everything.
+            let of_objects =
+                target.objects().fold(PartialState::anywhere(self.m), |all, (id, at)| all.with_object(id, at.clone()));
+            let of_robot = PartialState::anywhere(self.m).with_robot(self.m, state.robot.clone());
+            for to in [target, of_objects, of_robot] {
+                if self.is_useful(&to)? {
+                    let _ = self.propagate(&to, 2)?;
+                }
+                let _ = self.approach(&to)?;
+            }
+        }
+        Ok(())
     }
 
     /// A target that asks the same, but holds other values where it asks nothing.
@@ -258,9 +333,10 @@ impl<D: Domain> Trial<'_, D> {
             let travel = instances.iter().map(|instance| instance.motion.length()).sum();
             at_most(APPROACH, metres, travel, self.claims.motion.slack_m)?;
         }
-        if !self.claims.excuse.is_some_and(|excuse| excuse(self.m, self.from, self.to, &end)) {
-            progress(self.m, self.from, self.to, &end, instances)?;
+        if !self.is_excused(&end) {
+            progress(self.m, self.from, self.to, &end, (instances, self.claims.least_m))?;
         }
+        self.at_most(instances, &end)?;
         if self.claims.truncates { self.truncation(instances) } else { Ok(()) }
     }
 
@@ -317,7 +393,8 @@ fn head<D: Domain>(instance: &Instance<D>) -> impl PartialEq + std::fmt::Debug +
 }
 
 /// An instance allows the contact with the object that it names: `validity` may find other reasons why
-/// the motion is not free, but not that robot and this object touch.
+/// the motion is not free, but not that robot and this object touch. Whether it is the robot that touches the object is not
+/// believed of the kind of the blame alone: it is also when the same place is free as soon as the robot is elsewhere.
 ///
 /// # Errors
 /// [`CONTACTS`] with the blame.
@@ -328,21 +405,40 @@ pub fn check_contacts<D: Domain>(
     from: &State<D>,
     ts: &[f64],
 ) -> Result<(), Broken> {
-    for instance in instances {
-        let Some(name) = instance.object.map(|id: ObjectId| m.component_name(ComponentId::Object(id))) else {
-            continue;
-        };
-        for t in ts.iter().copied().chain([0.0, 1.0]) {
-            let Err(blame) = validity.check(m, &instance.at(m, t, from), &instance.contacts) else { continue };
-            let names_it = *blame.first == *name || *blame.second == *name;
-            if blame.kind == BlockKind::RobotObject && names_it {
-                let broken = Broken::new(CONTACTS, blame.to_string(), format!("contact with {name} allowed"));
-                return Err(broken
-                    .at(t)
-                    .of(format_args!("instance {:?}", instance.label))
-                    .replayed_by(|| format!("check_contacts(&{instance:?}, &{from:?}, &{ts:?})")));
+    let about = || format!("check_contacts(&{instances:?}, &{from:?}, &{ts:?})");
+    let check = || {
+        for instance in instances {
+            let Some(name) = instance.object.map(|id: ObjectId| m.component_name(ComponentId::Object(id))) else {
+                continue;
+            };
+            for t in ts.iter().copied().chain([0.0, 1.0]) {
+                let state = instance.at(m, t, from);
+                entering("check");
+                let Err(blame) = validity.check(m, &state, &instance.contacts) else { continue };
+                let names_it = *blame.first == *name || *blame.second == *name;
+                if names_it && is_of_the_robot(m, validity, instance, &state, &blame) {
+                    let broken = Broken::new(CONTACTS, blame.to_string(), format!("contact with {name} allowed"));
+                    return Err(broken.at(t).of(format_args!("instance {:?}", instance.label)));
+                }
             }
         }
-    }
-    Ok(())
+        Ok(())
+    };
+    watched(&about, check).map_err(|broken| broken.replayed_by(about))
+}
+
+/// Is it the robot that touches?
+fn is_of_the_robot<D: Domain>(
+    m: &D,
+    validity: &dyn Validity<D>,
+    instance: &Instance<D>,
+    state: &State<D>,
+    blame: &Blame,
+) -> bool {
+    let mut rng = rng_of(state);
+    blame.kind == BlockKind::RobotObject
+        || (0..8).any(|_| {
+            let away = State { robot: m.robot().sample(&mut rng), ..state.clone() };
+            validity.check(m, &away, &instance.contacts).is_ok()
+        })
 }

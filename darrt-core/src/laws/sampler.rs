@@ -8,7 +8,9 @@ use crate::sample::Sampler;
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId};
 
-use super::{Broken, ensure, equal};
+use super::feed::values;
+use super::watch::{drawing, watched};
+use super::{Broken, alike, ensure};
 
 /// Inside.
 pub const INSIDE: &str = "sampler.inside: every named component of a sample lies in its space";
@@ -20,23 +22,45 @@ pub const SEEDED: &str = "sampler.seeded: the same generator gives the same samp
 /// Covers.
 pub const COVERS: &str = "sampler.covers: every component that can move is named by some samples";
 
+/// Covers the room.
+pub const FILLS: &str =
+    "sampler.fills: samples of a component come into every sixth of where its space draws it, along every coordinate";
+
 /// The laws of this file.
-pub const LAWS: &[&str] = &[INSIDE, NAMES, SEEDED, COVERS];
+pub const LAWS: &[&str] = &[INSIDE, NAMES, SEEDED, COVERS, FILLS];
+
+/// How many samples each check draws: a fault in one of a thousand is then seen in the cases of one test.
+const DRAWS: u64 = 16;
+/// So many samples that name a component say whether they fill its space. That a sixth stays empty by chance happens once in
+/// 10^12 times; if half of them come from a goal, once in 10^6.
+const ENOUGH: usize = 160;
+/// So many samples are drawn at least to see whether they fill the space.
+const FILLING: u64 = 1024;
+/// Into how many parts of equal probability the space is cut along each coordinate.
+const PARTS: usize = 6;
+/// How many samples of the space itself say where they are.
+const REFERENCE: u64 = 128;
 
 /// All laws of a sampler, for one seed.
 ///
 /// # Errors
 /// The first law that is [`Broken`].
 pub fn check_sampler<D: Domain>(m: &D, sampler: &dyn Sampler<D>, goal: &dyn Goal<D>, seed: u64) -> Result<(), Broken> {
-    let draw = |i| sampler.sample(m, goal, &mut stream(seed, 0, i, Purpose::Sample));
-    let check = || {
-        let sample = draw(0);
-        let _ = draw(1);
-        equal(SEEDED, &draw(0), &sample)?;
-        ensure(NAMES, !sample.components().is_empty(), || format!("{sample:?}"), "a target that names something")?;
-        inside(m, &sample, seed)
+    let about = || format!("check_sampler({seed})");
+    let draw = |i| {
+        let rng = stream(seed, 0, i, Purpose::Sample);
+        drawing("sample of the sampler", rng, |rng| sampler.sample(m, goal, rng))
     };
-    check().map_err(|broken| broken.replayed_by(|| format!("check_sampler({seed})")))
+    let check = || {
+        let first = draw(0)?;
+        for i in 0..DRAWS {
+            let sample = draw(i)?;
+            ensure(NAMES, !sample.components().is_empty(), || format!("{sample:?}"), "a target that names something")?;
+            inside(m, &sample, seed)?;
+        }
+        alike(SEEDED, &draw(0)?, &first)
+    };
+    watched(&about, check).map_err(|broken| broken.replayed_by(about))
 }
 
 fn inside<D: Domain>(m: &D, sample: &PartialState<D>, seed: u64) -> Result<(), Broken> {
@@ -48,10 +72,11 @@ fn inside<D: Domain>(m: &D, sample: &PartialState<D>, seed: u64) -> Result<(), B
         .map_err(|broken| broken.of(m.component_name(ComponentId::Robot)))
 }
 
-/// In `draws` samples every component that can move is named at least once.
+/// In `draws` samples every component that can move is named at least once; and in 1024 or more, those of components named often
+/// enough fill where the component's own space draws it.
 ///
 /// # Errors
-/// [`COVERS`] with the component that is never named.
+/// [`COVERS`] with the component that is never named, [`FILLS`] with the part of its space that is left out.
 pub fn check_sampler_covers<D: Domain>(
     m: &D,
     sampler: &dyn Sampler<D>,
@@ -59,17 +84,70 @@ pub fn check_sampler_covers<D: Domain>(
     draws: u64,
     seed: u64,
 ) -> Result<(), Broken> {
-    let named = (0..draws).fold(ComponentSet::EMPTY, |set, i| {
-        set.union(sampler.sample(m, goal, &mut stream(seed, 0, i, Purpose::Sample)).components())
-    });
-    let objects = m.objects().iter().enumerate().filter(|(_, space)| space.dimension() > 0);
-    let robot = (m.robot().dimension() > 0).then_some(ComponentId::Robot);
-    for component in robot.into_iter().chain(objects.map(|(i, _)| ComponentId::Object(ObjectId::new(i)))) {
-        let text = || format!("not named in {draws} samples");
-        ensure(COVERS, named.contains(component), text, "named by some").map_err(|broken| {
-            let broken = broken.of(m.component_name(component));
-            broken.replayed_by(|| format!("check_sampler_covers({draws}, {seed})"))
-        })?;
+    let about = || format!("check_sampler_covers({draws}, {seed})");
+    let check = || {
+        let mut samples = Vec::new();
+        for i in 0..draws.max(FILLING) {
+            let rng = stream(seed, 0, i, Purpose::Sample);
+            samples.push(drawing("sample of the sampler", rng, |rng| sampler.sample(m, goal, rng))?);
+        }
+        let count = usize::try_from(draws).unwrap_or(usize::MAX);
+        let named = samples.iter().take(count).fold(ComponentSet::EMPTY, |set, sample| set.union(sample.components()));
+        let objects = m.objects().iter().enumerate().filter(|(_, space)| space.dimension() > 0);
+        let robot = (m.robot().dimension() > 0).then_some(ComponentId::Robot);
+        for component in robot.into_iter().chain(objects.map(|(i, _)| ComponentId::Object(ObjectId::new(i)))) {
+            let of = |broken: Broken| broken.of(m.component_name(component));
+            let text = || format!("not named in {draws} samples");
+            ensure(COVERS, named.contains(component), text, "named by some").map_err(of)?;
+            match component {
+                ComponentId::Robot => {
+                    let all = m.robot().groups();
+                    let whole = samples.iter().filter_map(|sample| sample.robot()).filter(|r| r.groups == all);
+                    fills(m.robot(), whole.map(|robot| &robot.config), seed).map_err(of)?;
+                }
+                ComponentId::Object(id) => {
+                    let Some(space) = m.objects().get(id.index()) else { continue };
+                    fills(space, samples.iter().filter_map(|sample| sample.object(id)), seed).map_err(of)?;
+                }
+            }
+        }
+        Ok(())
+    };
+    watched(&about, check).map_err(|broken| broken.replayed_by(about))
+}
+
+/// Every sixth of the space's own samples, along every coordinate, and by the distance from two of them, has some of `found`.
+fn fills<'a, S: ComponentSpace>(
+    space: &S,
+    found: impl Iterator<Item = &'a S::Config>,
+    seed: u64,
+) -> Result<(), Broken> {
+    let found: Vec<_> = found.collect();
+    if found.len() < ENOUGH {
+        return Ok(());
+    }
+    let mut own = Vec::new();
+    for i in 0..REFERENCE {
+        own.push(drawing("sample", stream(seed, 2, i, Purpose::Sample), |rng| space.sample(rng))?);
+    }
+    let count = own.first().map_or(0, |q| values(space, q).len());
+    let by_value = |i: usize, q: &S::Config| values(space, q).get(i).copied().unwrap_or(0.0);
+    let by_distance = |i: usize, q: &S::Config| own.get(i).map_or(0.0, |probe| space.distance(probe, q));
+    for i in 0..count + 2 {
+        let measure = |q: &S::Config| if i < count { by_value(i, q) } else { by_distance(i - count, q) };
+        let mut reference: Vec<f64> = own.iter().map(measure).collect();
+        reference.sort_by(f64::total_cmp);
+        let part = |k: usize| reference.get(k * (reference.len() - 1) / PARTS).copied().unwrap_or(0.0);
+        for k in 0..PARTS {
+            let (low, high) = (part(k), part(k + 1));
+            if high <= low {
+                continue;
+            }
+            let is_hit = found.iter().any(|q| (low..=high).contains(&measure(q)));
+            let what = if i < count { format!("coordinate {i}") } else { "distance from a sample".to_owned() };
+            let text = || format!("none of {} samples has its {what} in [{low:?}, {high:?}]", found.len());
+            ensure(FILLS, is_hit, text, "some: the space draws a sixth of its own there")?;
+        }
     }
     Ok(())
 }

@@ -5,7 +5,14 @@ use std::fmt::Debug;
 use crate::random::{Purpose, stream};
 use crate::space::{ComponentSpace, GroupSet};
 
-use super::{Broken, at_most, ensure, equal, identical, measure};
+use super::watch::{drawing, entering, watched};
+use super::{Broken, alike, at_most, ensure, equal, identical, measure};
+
+mod coverage;
+mod extremes;
+mod places;
+
+pub use coverage::check_space_covers;
 
 /// The configurations handed to a check must lie in the space.
 pub const GIVEN: &str = "space.given: the configurations given to the check lie in the space";
@@ -49,9 +56,42 @@ pub const OVERLAY_GROUPS: &str =
 /// Overlay: inside.
 pub const OVERLAY_INSIDE: &str = "space.overlay-inside: an overlay of two configurations of the space lies in it";
 
+/// What is no number.
+pub const NAN: &str = "space.nan: nothing that is NaN or infinite lies in the space";
+/// What is no number is near nothing.
+pub const NAN_FAR: &str = "space.nan-far: nothing that is NaN is within tolerance of anything";
+/// Pure.
+pub const PURE: &str = "space.pure: the same question has the same answer, bit for bit, whenever it is asked";
+/// Degrees of freedom.
+pub const DIMENSION: &str = "space.dimension: a space whose samples differ has at least one degree of freedom";
+/// The tolerance is small.
+pub const TOLERANCE_SMALL: &str =
+    "space.tolerance-small: the tolerance is at most a hundredth of the way between samples";
+/// Small differences count.
+pub const RESOLVES: &str = "space.resolves: the distance grows from the first step on: no threshold, steps or plateau";
+/// Every coordinate counts.
+pub const DEAF: &str = "space.deaf: two configurations that differ in one coordinate only are not at distance 0";
+/// Special places: inside.
+pub const PLACE_INSIDE: &str = "space.place-inside: what sample_at draws lies in the space";
+/// Special places: seeded.
+pub const PLACE_SEEDED: &str = "space.place-seeded: the same generator gives the same sample at a place";
+/// Sampling: the whole range.
+pub const SAMPLE_FILLS: &str =
+    "space.sample-fills: samples fill the range that contains accepts, along every coordinate";
+
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
     GIVEN,
+    NAN,
+    NAN_FAR,
+    PURE,
+    DIMENSION,
+    TOLERANCE_SMALL,
+    RESOLVES,
+    DEAF,
+    PLACE_INSIDE,
+    PLACE_SEEDED,
+    SAMPLE_FILLS,
     FINITE,
     SELF,
     SYMMETRIC,
@@ -80,13 +120,15 @@ pub struct SpaceClaims {
     pub triangle: bool,
     /// Its interpolation is the shortest way at even speed, as motions along it need.
     pub even: bool,
+    /// Every coordinate counts in its distance: not so if turns about an axis of symmetry are free.
+    pub hears_all: bool,
     /// Rounding that is forgiven, metres per metre (and metres near zero).
     pub slack: f64,
 }
 
 impl Default for SpaceClaims {
     fn default() -> Self {
-        Self { triangle: true, even: true, slack: 1e-7 }
+        Self { triangle: true, even: true, hears_all: true, slack: 1e-7 }
     }
 }
 
@@ -108,19 +150,29 @@ pub fn check_component_space<S: ComponentSpace>(
     seed: u64,
 ) -> Result<(), Broken> {
     let [a, b, c] = configs;
+    let about = || format!("check_component_space({claims:?}, [&{a:?}, &{b:?}, &{c:?}], {ts:?}, {seed})");
     let check = || {
         for q in configs {
+            entering("contains");
             ensure(GIVEN, space.contains(q), || format!("{q:?}"), "a configuration of the space")?;
         }
+        let before = extremes::answers(space, [a, b], ts[0], seed)?;
         metric(space, claims, configs)?;
         interpolation(space, claims, [a, b], ts)?;
         samples(space, seed)?;
         overlays(space, [a, b, c])?;
-        shadows(space, claims, [a, b])
+        shadows(space, claims, [a, b])?;
+        extremes::resolution(space, claims, [a, b])?;
+        if claims.hears_all {
+            extremes::hears(space, a)?;
+        }
+        extremes::extent(space, a, seed)?;
+        places::places(space, seed)?;
+        extremes::not_a_number(space, [a, b])?;
+        extremes::corners(space, claims, configs, seed)?;
+        extremes::unchanged(&before, &extremes::answers(space, [a, b], ts[0], seed)?)
     };
-    check().map_err(|broken| {
-        broken.replayed_by(|| format!("check_component_space({claims:?}, [&{a:?}, &{b:?}, &{c:?}], {ts:?}, {seed})"))
-    })
+    watched(&about, check).map_err(|broken| broken.replayed_by(about))
 }
 
 fn shadow_of<S: ComponentSpace>(space: &S, q: &S::Config) -> Vec<(u32, f64)> {
@@ -146,6 +198,7 @@ fn shadows<S: ComponentSpace>(space: &S, claims: &SpaceClaims, [a, b]: [&S::Conf
 fn metric<S: ComponentSpace>(space: &S, claims: &SpaceClaims, [a, b, c]: [&S::Config; 3]) -> Result<(), Broken> {
     let tolerance = space.tolerance();
     ensure(TOLERANCE, tolerance.is_finite() && tolerance > 0.0, || format!("{tolerance:?}"), "finite and positive")?;
+    entering("distance");
     let d = |p, q| {
         let metres = space.distance(p, q);
         measure(FINITE, metres).map(|()| metres)
@@ -173,6 +226,7 @@ fn interpolation<S: ComponentSpace>(
     [a, b]: [&S::Config; 2],
     ts: [f64; 2],
 ) -> Result<(), Broken> {
+    entering("interpolate");
     identical(ENDS, &space.interpolate(a, b, 0.0), a).map_err(|broken| broken.at(0.0))?;
     identical(ENDS, &space.interpolate(a, b, 1.0), b).map_err(|broken| broken.at(1.0))?;
     let length = space.distance(a, b);
@@ -197,18 +251,21 @@ fn interpolation<S: ComponentSpace>(
     Ok(())
 }
 
+/// How many samples each check draws: a fault in one of a thousand is then seen in the cases of one test.
+const SAMPLES: u64 = 64;
+
 fn samples<S: ComponentSpace>(space: &S, seed: u64) -> Result<(), Broken> {
-    let draw = |i| space.sample(&mut stream(seed, 0, i, Purpose::Sample));
-    let first = draw(0);
-    identical(SAMPLE_SEEDED, &draw(0), &first)?;
+    let draw = |i| drawing("sample", stream(seed, 0, i, Purpose::Sample), |rng| space.sample(rng));
+    let first = draw(0)?;
     let mut widest: f64 = 0.0;
-    for i in 0..8 {
-        let q = draw(i);
+    for i in 0..SAMPLES {
+        let q = draw(i)?;
         ensure(SAMPLE_INSIDE, space.contains(&q), || format!("{q:?}"), "a configuration of the space")?;
         widest = widest.max(space.distance(&first, &q));
     }
+    alike(SAMPLE_SEEDED, &draw(0)?, &first)?;
     let separates = space.dimension() == 0 || widest > 0.0;
-    ensure(SEPARATES, separates, || "eight samples, all at distance 0".to_owned(), "a positive distance")
+    ensure(SEPARATES, separates, || format!("{SAMPLES} samples, all at distance 0"), "a positive distance")
 }
 
 /// The groups that `space` has, one by one.
@@ -218,6 +275,7 @@ pub(super) fn groups_of<S: ComponentSpace>(space: &S) -> impl Iterator<Item = Gr
 }
 
 fn overlays<S: ComponentSpace>(space: &S, [a, b, c]: [&S::Config; 3]) -> Result<(), Broken> {
+    entering("overlay");
     identical(OVERLAY_ENDS, &space.overlay(a, b, space.groups()), b)?;
     if !space.groups().is_empty() {
         identical(OVERLAY_ENDS, &space.overlay(a, b, GroupSet::NONE), a)?;
@@ -250,13 +308,22 @@ pub fn check_covering<S: ComponentSpace>(
     draws: u64,
     seed: u64,
 ) -> Result<(), Broken> {
-    let distances = (0..draws).map(|i| {
-        let q = space.sample(&mut stream(seed, 0, i, Purpose::Sample));
-        space.distance(&q, target)
-    });
-    let least = distances.fold(f64::INFINITY, f64::min);
-    at_most(SAMPLE_COVERS, least, within_m, 0.0)
-        .map_err(|broken| broken.replayed_by(|| replay_covering(target, within_m, draws, seed)))
+    let about = || replay_covering(target, within_m, draws, seed);
+    let check = || {
+        let mut least = f64::INFINITY;
+        for i in 0..draws {
+            let q = drawing("sample", stream(seed, 0, i, Purpose::Sample), |rng| space.sample(rng))?;
+            least = least.min(space.distance(&q, target));
+        }
+        at_most(SAMPLE_COVERS, least, within_m, 0.0)
+    };
+    watched(&about, check).map_err(|broken| broken.replayed_by(about))
+}
+
+/// Answers of a space to a handful of questions, printed: what [`PURE`] holds over the time of a whole check.
+pub(super) fn answers_of<S: ComponentSpace>(space: &S, configs: [&S::Config; 2]) -> Result<Vec<String>, Broken> {
+    let all = extremes::answers(space, configs, 0.3, 0)?;
+    Ok(all.into_iter().map(|(call, answer)| format!("{call}: {answer}")).collect())
 }
 
 fn replay_covering(target: &impl Debug, within_m: f64, draws: u64, seed: u64) -> String {

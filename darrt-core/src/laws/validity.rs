@@ -11,7 +11,13 @@ use crate::random::{Purpose, stream};
 use crate::state::State;
 use crate::validity::{Blame, FreePrefix, Validity};
 
+use super::watch::{entering, watched};
 use super::{Broken, ensure, equal};
+
+mod oracle;
+mod outside;
+
+pub use oracle::{Free, check_by_oracle};
 
 /// Pure.
 pub const PURE: &str = "validity.pure: the same question has the same answer, whatever was asked in between";
@@ -38,10 +44,41 @@ pub const CARE: &str = "validity.care: what is free with more care is free with 
 pub const ENLARGED: &str = "validity.enlarged: enlarging an obstacle never makes an invalid state valid";
 /// The oracle.
 pub const ORACLE: &str = "validity.oracle: what the fast check calls free, the exact oracle calls free";
+/// What is no number.
+pub const NAN: &str = "validity.nan: a state with a component that is NaN or infinite is not valid, whatever may touch";
+/// Exemptions end at the object.
+pub const EXEMPTS: &str =
+    "validity.exempts: an allowed contact excuses only bodies that the instance names, moves or has at hand";
+/// Kinds of blame.
+pub const BLAME_KIND: &str =
+    "validity.blame-kind: the kind of a blame fits the names, and who it names is really to blame";
+/// The user's oracle.
+pub const LAX: &str = "validity.lax: check never calls free what the user's oracle calls blocked";
+/// The user's oracle, the other way round.
+pub const STRICT: &str = "validity.strict: of what the user's oracle calls free, at least half is accepted";
+/// The user's oracle along motions.
+pub const ORACLE_PREFIX: &str = "validity.oracle-prefix: no state of a free prefix is blocked for the user's oracle";
 
 /// The laws of this file.
-pub const LAWS: &[&str] =
-    &[PURE, FRACTION, ONE_BY_ONE, CUT, BLAME_REAL, BLAME_NAMES, BLAME_TEXT, EXEMPTIONS, CARE, ENLARGED, ORACLE];
+pub const LAWS: &[&str] = &[
+    PURE,
+    FRACTION,
+    ONE_BY_ONE,
+    CUT,
+    BLAME_REAL,
+    BLAME_NAMES,
+    BLAME_TEXT,
+    EXEMPTIONS,
+    CARE,
+    ENLARGED,
+    ORACLE,
+    NAN,
+    EXEMPTS,
+    BLAME_KIND,
+    LAX,
+    STRICT,
+    ORACLE_PREFIX,
+];
 
 /// How exactly a validity answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,11 +90,13 @@ pub struct ValidityClaims {
     pub same_names: bool,
     /// How many random parameters are looked at between the regular ones.
     pub between: usize,
+    /// How many states anywhere it is judged by from outside: exemptions, kinds of blames, memory.
+    pub anywhere: usize,
 }
 
 impl Default for ValidityClaims {
     fn default() -> Self {
-        Self { tight_m: 0.02, same_names: true, between: 16 }
+        Self { tight_m: 0.02, same_names: true, between: 16, anywhere: 12 }
     }
 }
 
@@ -74,11 +113,14 @@ pub fn check_validity<D: Domain>(
     seed: u64,
 ) -> Result<(), Broken> {
     let trial = Trial { m, validity, instance, from, claims };
-    trial.run(seed).map_err(|broken| {
-        let broken = broken.of(format_args!("motion {:?}", instance.label));
-        broken.replayed_by(|| format!("check_validity(&{instance:?}, &{from:?}, {claims:?}, {seed})"))
-    })
+    let about = || format!("check_validity(&{instance:?}, &{from:?}, {claims:?}, {seed})");
+    watched(&about, || trial.run(seed))
+        .map_err(|broken| broken.of(format_args!("motion {:?}", instance.label)).replayed_by(about))
 }
+
+/// At most so many metres lie between two looks at a free prefix, as long as it is not longer than [`MOST_LOOKS`] of them.
+const LOOK_M: f64 = 0.01;
+const MOST_LOOKS: f64 = 512.0;
 
 struct Trial<'a, D: Domain> {
     m: &'a D,
@@ -90,12 +132,18 @@ struct Trial<'a, D: Domain> {
 
 impl<D: Domain> Trial<'_, D> {
     fn check(&self, t: f64) -> Result<(), Blame> {
+        entering("check");
         self.validity.check(self.m, &self.instance.at(self.m, t, self.from), &self.instance.contacts)
+    }
+
+    fn free_prefix(&self, instance: &Instance<D>) -> FreePrefix {
+        entering("free_prefix");
+        self.validity.free_prefix(self.m, instance, self.from)
     }
 
     fn run(&self, seed: u64) -> Result<(), Broken> {
         let bare = self.bare_answers();
-        let free = self.validity.free_prefix(self.m, self.instance, self.from);
+        let free = self.free_prefix(self.instance);
         shape(&free)?;
         self.prefix(&free, seed)?;
         if let Some(blame) = &free.blame {
@@ -103,19 +151,26 @@ impl<D: Domain> Trial<'_, D> {
             self.blocked(&free, blame)?;
         }
         self.exemptions(&bare)?;
-        equal(PURE, &self.validity.free_prefix(self.m, self.instance, self.from), &free)?;
+        equal(PURE, &self.free_prefix(self.instance), &free)?;
         self.care(&free)?;
-        self.cut(&free)
+        self.cut(&free)?;
+        self.outside(seed)?;
+        // After all the other questions.
+        equal(PURE, &self.free_prefix(self.instance), &free)
     }
 
-    /// No state of the prefix is rejected: its end, 2, 7 and 64 equal steps, and random ones.
+    /// No state of the prefix is rejected: its end, 2, 7 and 64 equal steps, steps of a centimetre, and random ones.
     fn prefix(&self, free: &FreePrefix, seed: u64) -> Result<(), Broken> {
         if free.fraction <= 0.0 {
             return Ok(());
         }
         let mut rng = stream(seed, 0, 0, Purpose::Sample);
         let random = (0..self.claims.between).map(|_| rng.random_range(0.0..=free.fraction)).collect::<Vec<_>>();
-        let regular = [1_u32, 2, 7, 64]
+        let metres = self.instance.motion.length() * free.fraction;
+        // Not negative, and at most MOST_LOOKS; NaN gives none.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+        let by_metres = (metres / LOOK_M).ceil().clamp(1.0, MOST_LOOKS) as u32;
+        let regular = [1_u32, 2, 7, 64, by_metres]
             .into_iter()
             .flat_map(|n| (0..=n).map(move |i| free.fraction * (f64::from(i) / f64::from(n))));
         for t in regular.chain(random) {
@@ -203,7 +258,7 @@ impl<D: Domain> Trial<'_, D> {
                 continue;
             }
             let short = truncated(self.instance, until);
-            let again = self.validity.free_prefix(self.m, &short, self.from);
+            let again = self.free_prefix(&short);
             if let Some(blame) = &again.blame {
                 let left = format!("free up to {:?}, then {blame}", again.fraction * until);
                 return Err(Broken::new(CUT, left, format!("free up to {:?}", free.fraction)).at(until));

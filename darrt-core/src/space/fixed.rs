@@ -19,7 +19,7 @@ impl<C> Fixed<C> {
     }
 }
 
-impl<C: Clone + PartialEq + Debug + Send + Sync> ComponentSpace for Fixed<C> {
+impl<C: Clone + PartialEq + Debug + Send + Sync + 'static> ComponentSpace for Fixed<C> {
     type Config = C;
 
     fn dimension(&self) -> usize {

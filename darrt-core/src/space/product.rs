@@ -71,6 +71,11 @@ impl<A: ComponentSpace, B: ComponentSpace> ComponentSpace for Product<A, B> {
         )
     }
 
+    fn numbers(&self, q: &mut Self::Config, visit: &mut dyn FnMut(&mut f64)) {
+        self.first.numbers(&mut q.0, visit);
+        self.second.numbers(&mut q.1, visit);
+    }
+
     fn shadow(&self, q: &Self::Config, mark: &mut dyn FnMut(u32, f64)) {
         self.first.shadow(&q.0, mark);
         let by = self.first_groups();

@@ -38,7 +38,7 @@ enum Starts {
 
 /// Along a line the arm takes steps of up to 0.3 rad per joint, straight in joint space: between two of them the hand may
 /// turn by a few hundredths of a radian and leave the line by some millimetres.
-const CLAIMS: TabletopClaims = TabletopClaims { knot: 1e-6, bow: 0.05, touch_m: 0.005, slack_m: 1e-7 };
+const CLAIMS: TabletopClaims = TabletopClaims { knot: 1e-6, bow: 0.05, touch_m: 0.005, slack_m: 1e-7, looks: 16 };
 
 /// All laws of one primitive from all kinds of states; it must succeed now and then, or nothing is shown.
 fn check(primitive: &dyn Primitive<World>, starts: Starts, cases: u32, excuse: Option<Excuse<'_, World>>) {
@@ -54,7 +54,7 @@ fn check(primitive: &dyn Primitive<World>, starts: Starts, cases: u32, excuse: O
             (_, Starts::Engaged) => engaged,
         });
         proptest!(config(cases, REGRESSIONS), |((from, to, seed) in tasks_from(m, starts), ts in looks())| {
-            let motion = MotionClaims { travel: &body_travel, ..MotionClaims::default() };
+            let motion = MotionClaims { travel: &body_travel, looks: 16, ..MotionClaims::default() };
             let claims = PrimitiveClaims { ts: &ts, motion, max_instances: 8, excuse, ..PrimitiveClaims::default() };
             if let Tried::Propagated(instances) = try_primitive(m, primitive, &from, &to, seed, &claims)? {
                 succeeded.set(succeeded.get() + 1);
@@ -106,7 +106,7 @@ fn base_rigid_transfer_in_the_plane() {
             let pose = from.objects[id.index()];
             let target = Isometry3::from_parts(Translation3::new(x, y, pose.translation.z), turn * pose.rotation);
             let to = PartialState::anywhere(m).with_object(id, target);
-            let motion = MotionClaims { travel: &body_travel, ..MotionClaims::default() };
+            let motion = MotionClaims { travel: &body_travel, looks: 16, ..MotionClaims::default() };
             let claims = PrimitiveClaims { ts: &ts, motion, max_instances: 1, ..PrimitiveClaims::default() };
             if let Tried::Propagated(instances) = try_primitive(m, &BaseRigidTransfer, &from, &to, seed, &claims)? {
                 succeeded.set(succeeded.get() + 1);

@@ -89,7 +89,7 @@ fn what_is_called_free_keeps_the_margins() {
 
 /// A step of the conservative advancement that ends in a collision is not made, and a step is up to 0.2 m long (the cap of
 /// the distances): so early may the free prefix end.
-const CLAIMS: ValidityClaims = ValidityClaims { tight_m: 0.21, same_names: false, between: 8 };
+const CLAIMS: ValidityClaims = ValidityClaims { tight_m: 0.21, same_names: false, between: 8, anywhere: 2 };
 
 /// Whatever the oracle rejects, the fast check rejects, in any state.
 #[test]

@@ -73,11 +73,13 @@ pub struct TabletopClaims {
     pub touch_m: f64,
     /// Rounding that is forgiven in the length of motions, metres.
     pub slack_m: f64,
+    /// At how many evenly spaced parameters motions are looked at besides the given ones, their knots and random ones.
+    pub looks: u32,
 }
 
 impl Default for TabletopClaims {
     fn default() -> Self {
-        Self { knot: 1e-6, bow: 0.01, touch_m: 0.005, slack_m: 1e-7 }
+        Self { knot: 1e-6, bow: 0.01, touch_m: 0.005, slack_m: 1e-7, looks: 24 }
     }
 }
 
@@ -94,7 +96,7 @@ pub fn check_tabletop<M: Manipulator>(
     ts: &[f64],
     claims: &TabletopClaims,
 ) -> Result<(), Broken> {
-    let motion = MotionClaims { travel: &body_travel, slack_m: claims.slack_m };
+    let motion = MotionClaims { travel: &body_travel, slack_m: claims.slack_m, looks: claims.looks };
     let mut here = from.clone();
     for instance in instances {
         check_instance(m, instance, &here, ts, &motion)?;

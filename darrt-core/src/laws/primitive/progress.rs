@@ -14,9 +14,11 @@ struct Gap {
     component: ComponentId,
     before: f64,
     after: f64,
+    /// Not farther than this it is at the target.
+    tolerance: f64,
 }
 
-/// If named objects move, one of them must end nearer to its target. Otherwise the robot must, or an
+/// If named objects move, each of them must end nearer to its target, by `least_m` or up to it. Otherwise the robot must, or an
 /// object must have been approached or manipulated to another mode: a grasp moves nothing, and yet the
 /// object can be carried afterwards.
 pub(super) fn progress<D: Domain>(
@@ -24,14 +26,16 @@ pub(super) fn progress<D: Domain>(
     from: &State<D>,
     to: &PartialState<D>,
     end: &State<D>,
-    instances: &[Instance<D>],
+    (instances, least_m): (&[Instance<D>], f64),
 ) -> Result<(), Broken> {
     let moved = instances.iter().fold(ComponentSet::EMPTY, |set, instance| set.union(instance.moves));
     let gaps = gaps(m, from, to, end, moved);
-    let is_nearer = |gap: &Gap| gap.after < gap.before;
-    let mut objects = gaps.iter().filter(|gap| gap.component != ComponentId::Robot).peekable();
+    let is_nearer = |gap: &Gap| gap.after <= (gap.before - least_m).max(gap.tolerance) && gap.after < gap.before;
+    // What was at its target, and what stays where it is, is no progress and no harm.
+    let moves = |gap: &&Gap| gap.component != ComponentId::Robot && gap.before > gap.tolerance;
+    let mut objects = gaps.iter().filter(moves).peekable();
     let holds = if objects.peek().is_some() {
-        objects.any(is_nearer)
+        objects.all(is_nearer)
     } else {
         let prepares = from.mode != end.mode && instances.iter().any(|instance| instance.object.is_some());
         prepares || gaps.iter().any(is_nearer)
@@ -55,14 +59,16 @@ fn gaps<D: Domain>(m: &D, from: &State<D>, to: &PartialState<D>, end: &State<D>,
     let mut gaps = Vec::new();
     if moved.contains(ComponentId::Robot) && to.robot().is_some() {
         let gap = |s: &State<D>| m.robot().distance(&s.robot, &to.robot_overlay(m, &s.robot));
-        gaps.push(Gap { component: ComponentId::Robot, before: gap(from), after: gap(end) });
+        let tolerance = m.robot().tolerance();
+        gaps.push(Gap { component: ComponentId::Robot, before: gap(from), after: gap(end), tolerance });
     }
     for (id, target) in to.objects() {
         let component = ComponentId::Object(id);
         if moved.contains(component)
             && let (Some(space), Some(p), Some(q)) = (m.objects().get(id.index()), from.object(id), end.object(id))
         {
-            gaps.push(Gap { component, before: space.distance(p, target), after: space.distance(q, target) });
+            let (before, after) = (space.distance(p, target), space.distance(q, target));
+            gaps.push(Gap { component, before, after, tolerance: space.tolerance() });
         }
     }
     gaps

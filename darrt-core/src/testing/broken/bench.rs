@@ -16,7 +16,7 @@ use crate::motion::Instance;
 use crate::partial::PartialState;
 use crate::primitive::{Infeasible, Instances, Primitive};
 use crate::space::so2::{turn, wrap};
-use crate::space::{ComponentSpace, GroupSet};
+use crate::space::{ComponentSpace, GroupSet, Place};
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 use crate::validity::{Blame, BlockKind, FreePrefix, Validity};
 
@@ -43,11 +43,17 @@ pub struct Sketch {
     pub shadow: fn(&Config) -> [f64; 2],
     /// [`ComponentSpace::tolerance`].
     pub tolerance: f64,
+    /// [`ComponentSpace::dimension`].
+    pub dimension: usize,
+    /// [`ComponentSpace::sample_at`].
+    pub sample_at: fn(&mut dyn Rng) -> Option<Config>,
 }
 
 impl Default for Sketch {
     fn default() -> Self {
-        Self { contains: inside, distance, interpolate, sample, overlay, shadow, tolerance: 1e-9 }
+        let sample_at = |rng: &mut dyn Rng| Some([rng.random_range(0.0..=0.2), sample(rng)[1]]);
+        let tolerance = 1e-9;
+        Self { contains: inside, distance, interpolate, sample, overlay, shadow, tolerance, dimension: 2, sample_at }
     }
 }
 
@@ -92,7 +98,7 @@ impl ComponentSpace for Sketch {
     type Config = Config;
 
     fn dimension(&self) -> usize {
-        2
+        self.dimension
     }
 
     fn contains(&self, q: &Config) -> bool {
@@ -109,6 +115,10 @@ impl ComponentSpace for Sketch {
 
     fn sample(&self, rng: &mut dyn Rng) -> Config {
         (self.sample)(rng)
+    }
+
+    fn sample_at(&self, _: Place, rng: &mut dyn Rng) -> Option<Config> {
+        (self.sample_at)(rng)
     }
 
     fn tolerance(&self) -> f64 {
@@ -339,12 +349,19 @@ impl Default for Rule {
 /// Closer than this along the rail, carts touch; metres.
 pub const TOUCH_M: f64 = 0.1;
 
-/// The robot keeps off the wall, and off the carts that it may not touch.
+/// Everything is on the rail, and the robot keeps off the wall, and off the carts that it may not touch.
 ///
 /// # Errors
 /// The blame.
 pub fn check(wall: (f64, f64), state: &State<Bench>, contacts: ComponentSet) -> Result<(), Blame> {
     let x = state.robot[0];
+    let all = std::iter::once((ComponentId::Robot, &state.robot));
+    let objects = state.objects.iter().enumerate().map(|(i, at)| (ComponentId::Object(ObjectId::new(i)), at));
+    for (id, at) in all.chain(objects) {
+        if !inside(at) {
+            return Err(Blame { first: name(id).into(), ..blame(BlockKind::Limits, "ends of the rail", 0.0) });
+        }
+    }
     if wall.0 <= x && x <= wall.1 {
         return Err(blame(BlockKind::RobotFixed, "wall", x));
     }

@@ -18,9 +18,9 @@ type Metres = fn(&Bench, &State<Bench>, &PartialState<Bench>) -> f64;
 type Nearest = fn(&Bench, &Tree<Bench>, &PartialState<Bench>) -> Option<NodeId>;
 
 /// A distance made of functions.
-struct Gauge {
-    metres: Metres,
-    nearest: Option<Nearest>,
+pub(super) struct Gauge {
+    pub(super) metres: Metres,
+    pub(super) nearest: Option<Nearest>,
 }
 
 impl Distance<Bench> for Gauge {

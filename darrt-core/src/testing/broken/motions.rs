@@ -2,8 +2,10 @@
 
 use std::fmt;
 
+use rand::Rng;
+
 use super::Case;
-use super::bench::{Bench, Config, Tag, cart, state};
+use super::bench::{Bench, Config, Tag, cart, sample, state};
 use crate::laws::motion::{CLAMPED, FRAME, LENGTH, MODE, MotionClaims, NAMED, PURE, START, TRAVEL};
 use crate::laws::{Broken, check_instance};
 use crate::motion::{Instance, Motion, Straight, Waypoints};
@@ -11,9 +13,9 @@ use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 
 /// A motion made of a length and a function.
-struct Reel {
-    length_m: f64,
-    at: fn(f64, &mut State<Bench>),
+pub(super) struct Reel {
+    pub(super) length_m: f64,
+    pub(super) at: fn(f64, &mut State<Bench>),
 }
 
 impl Motion<Bench> for Reel {
@@ -30,6 +32,11 @@ impl fmt::Debug for Reel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Reel({:?} m)", self.length_m)
     }
+}
+
+/// Everything anywhere.
+pub(super) fn random_state(rng: &mut dyn Rng) -> State<Bench> {
+    State { robot: sample(rng), objects: [sample(rng), sample(rng)].into_iter().collect(), mode: Tag::default() }
 }
 
 /// An honest instance: the robot straight to `target`.

@@ -1,0 +1,129 @@
+//! Each primitive.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use rand::RngExt;
+
+use super::{Plan, Tally, rng_of_case};
+use crate::domain::Domain;
+use crate::laws::everything::report::Row;
+use crate::laws::everything::world::World;
+use crate::laws::primitive::{ENDS, Excuse, FEASIBLE, NOT_EMPTY, PANICS, PrimitiveClaims, Tried};
+use crate::laws::watch::{bounded, entering, guarded};
+use crate::laws::{Broken, MotionClaims, check_contacts, motion, primitive, try_primitive};
+use crate::random::{Purpose, stream};
+
+/// Parameters of an instance at which the contact with its object must be allowed.
+const TS: [f64; 4] = [0.2, 0.5, 0.8, 0.95];
+/// A primitive that was useful so often and never found a way finds none at all.
+const MOST_IN_VAIN: u64 = 1000;
+
+pub(super) fn plans<D: Domain>(world: &World<D>) -> Vec<Plan<D>> {
+    (0..world.subjects.primitives.len()).filter_map(|index| plan(world, index)).collect()
+}
+
+fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
+    let name = world.subjects.primitives.get(index)?.name();
+    // Calls, those in which it was useful, those in which it was propagated.
+    let tally = Arc::new(Tally::default());
+    let counted = Arc::clone(&tally);
+    let case = move |world: &World<D>, number: u64, level: u8| {
+        let Some(primitive) = world.subjects.primitives.get(index) else { return Ok(()) };
+        let (m, subjects) = (&*world.m, &world.subjects);
+        let mut rng = rng_of_case(number);
+        let from = world.state(&mut rng, level);
+        let to = world.target(&from, &mut rng, level);
+        let excuse = subjects.excuse.as_deref();
+        let excuse = excuse.map(|excuse| move |m: &D, a: &_, to: &_, b: &_| excuse(m, a, to, b));
+        let travel = |m: &D, a: &_, b: &_| match &subjects.travel {
+            Some(travel) => travel(m, a, b),
+            None => motion::component_travel(m, a, b),
+        };
+        let claims = PrimitiveClaims {
+            motion: MotionClaims { travel: &travel, ..MotionClaims::default() },
+            max_instances: subjects.max_instances,
+            excuse: excuse.as_ref().map(|excuse| excuse as Excuse<'_, D>),
+            ..PrimitiveClaims::default()
+        };
+        counted.count(&counted.tried);
+        match try_primitive(m, &**primitive, &from, &to, number, &claims)? {
+            Tried::NotUseful => {}
+            Tried::Infeasible(_) => counted.count(&counted.hit),
+            Tried::Propagated(instances) => {
+                counted.count(&counted.hit);
+                counted.count(&counted.reached);
+                if let Some(validity) = &subjects.validity {
+                    let mut here = from.clone();
+                    for instance in instances {
+                        let one = [instance];
+                        check_contacts(m, &**validity, &one, &here, &TS)?;
+                        let [instance] = one;
+                        here = instance.at(m, 1.0, &here);
+                    }
+                }
+            }
+        }
+        Ok(())
+    };
+    let once = move |world: &World<D>, row: &mut Row| {
+        let calls = many_calls(world, index, &tally)?;
+        let [tried, hit, reached] = [&tally.tried, &tally.hit, &tally.reached].map(Tally::get);
+        row.cases = calls;
+        if hit == 0 {
+            row.warn(format!("`useful` was false in {tried} of {tried} calls"));
+        } else if reached == 0 {
+            row.warn(format!("`propagate` found no way in {hit} of {hit} calls in which it was useful"));
+        }
+        if hit >= MOST_IN_VAIN && reached == 0 {
+            let found = format!("no way in {hit} of {hit} calls");
+            return Err(Broken::new(FEASIBLE, found, "a way now and then, where it is useful").of(name));
+        }
+        Ok(())
+    };
+    let laws = primitive::LAWS.len() + motion::LAWS.len();
+    Some(Plan::new(name, laws, world.subjects.effort.cases, case).finally(once))
+}
+
+/// Many calls that only look whether they come back, without panic: for what happens once in a thousand times.
+fn many_calls<D: Domain>(world: &World<D>, index: usize, tally: &Tally) -> Result<u64, Broken> {
+    let Some(primitive) = world.subjects.primitives.get(index) else { return Ok(0) };
+    let (m, calls) = (&*world.m, world.subjects.effort.calls);
+    let began = AtomicU64::new(0);
+    for i in 0..calls {
+        let number = stream(world.seed, 24, i, Purpose::Attempt).random();
+        let mut rng = rng_of_case(number);
+        // The state is the dear part: several targets for each.
+        let from = world.state(&mut rng, 0);
+        for attempt in 0..4 {
+            let to = world.target(&from, &mut rng, 0);
+            began.fetch_add(1, Relaxed);
+            tally.count(&tally.tried);
+            let about = |broken: Broken| {
+                broken.of(primitive.name()).replayed_by(|| {
+                    format!("check_primitive(&{}, &{from:?}, &{to:?}, {number}), draw {attempt}", primitive.name())
+                })
+            };
+            entering("useful");
+            if !guarded(PANICS, || primitive.useful(m, &from, &to)).map_err(about)? {
+                continue;
+            }
+            tally.count(&tally.hit);
+            entering("propagate");
+            let draws = stream(number, attempt, 0, Purpose::Extend);
+            let most = PrimitiveClaims::<D>::default().max_draws;
+            let found = bounded(PANICS, ENDS, most, draws, |rng| primitive.propagate(m, &from, &to, rng));
+            if let Ok(instances) = found.map_err(about)? {
+                tally.count(&tally.reached);
+                let is_empty = instances.is_empty();
+                if is_empty {
+                    return Err(about(Broken::new(NOT_EMPTY, "no instances", "at least one")));
+                }
+            }
+        }
+        if began.load(Relaxed) >= calls {
+            break;
+        }
+    }
+    Ok(began.into_inner())
+}

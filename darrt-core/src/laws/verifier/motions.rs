@@ -1,0 +1,267 @@
+//! Plans whose motions do what no motion does, or go where nothing may be.
+
+use std::sync::Arc;
+
+use rand::RngExt;
+
+use super::forge::{Change, Forge, LEAST_M};
+use super::{Way, rejected};
+use crate::domain::Domain;
+use crate::laws::feed::spoilt_states;
+use crate::laws::motion::component_travel;
+use crate::plan::Plan;
+use crate::random::Stream;
+use crate::space::ComponentSpace;
+use crate::state::{ComponentId, ObjectId, State};
+
+/// Between these parameters something is wrong.
+const WINDOW: (f64, f64) = (0.3, 0.7);
+
+pub(super) fn ways<D: Domain>() -> Vec<Way<D>> {
+    vec![
+        Way { name: "jumps away and back", change: jumps },
+        Way { name: "jumps in the last thousandth", change: jumps_late },
+        Way { name: "stands still, and then jumps to the end", change: stands_still },
+        Way { name: "passes through what is in the way", change: |f, rng| penetrates(f, rng, true) },
+        Way { name: "passes through what is in the way, in no time", change: |f, rng| penetrates(f, rng, false) },
+        Way { name: "ends elsewhere", change: |f, rng| ends_elsewhere(f, rng, 1.0) },
+        Way { name: "ends nearly there", change: |f, rng| ends_elsewhere(f, rng, 0.05) },
+        Way { name: "moves a bystander", change: |f, rng| bystander(f, rng, false) },
+        Way { name: "moves a bystander there and back", change: |f, rng| bystander(f, rng, true) },
+        Way { name: "the robot becomes NaN on the way", change: |f, rng| not_a_number(f, rng, true, WINDOW) },
+        Way { name: "the robot ends as NaN", change: |f, rng| not_a_number(f, rng, true, (0.9, 1.0)) },
+        Way { name: "an object becomes NaN on the way", change: |f, rng| not_a_number(f, rng, false, WINDOW) },
+        Way { name: "a length that is NaN", change: |f, rng| length(f, rng, f64::NAN) },
+        Way { name: "a length below 0", change: |f, rng| length(f, rng, -1.0) },
+        Way { name: "a length without end", change: |f, rng| length(f, rng, f64::INFINITY) },
+        Way { name: "lets go early", change: early },
+        Way { name: "loses an object", change: loses },
+        Way { name: "leaves the space of the robot", change: leaves },
+    ]
+}
+
+fn is_in((low, high): (f64, f64), t: f64) -> bool {
+    low < t && t <= high
+}
+
+fn jumps<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream) -> Option<Plan<D>> {
+    let step = forge.moving(rng)?;
+    let away = forge.displaced(forge.ends(step)?.0, ComponentId::Robot, rng)?.robot;
+    forge.changed(
+        step,
+        |length| length,
+        Arc::new(move |_, t, state| {
+            if is_in(WINDOW, t) {
+                state.robot.clone_from(&away);
+            }
+        }),
+    )
+}
+
+fn jumps_late<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream) -> Option<Plan<D>> {
+    let step = forge.moving(rng)?;
+    let away = forge.displaced(forge.ends(step)?.1, ComponentId::Robot, rng)?.robot;
+    forge.changed(
+        step,
+        |length| length,
+        Arc::new(move |_, t, state| {
+            if t > 0.999 {
+                state.robot.clone_from(&away);
+            }
+        }),
+    )
+}
+
+fn stands_still<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream) -> Option<Plan<D>> {
+    let step = forge.moving(rng)?;
+    let (start, end) = forge.ends(step)?;
+    if component_travel(forge.m(), start, end) < 5.0 * LEAST_M {
+        return None;
+    }
+    let start = start.clone();
+    forge.changed(
+        step,
+        |length| length,
+        Arc::new(move |_, t, state| {
+            if t < 0.999 && t > 0.0 {
+                state.robot.clone_from(&start.robot);
+                state.objects.clone_from(&start.objects);
+            }
+        }),
+    )
+}
+
+/// There and back in the window: 0 at its ends, 1 in the middle.
+fn bump(t: f64) -> f64 {
+    let (low, high) = WINDOW;
+    (1.0 - ((t - low) / (high - low) * 2.0 - 1.0).abs()).max(0.0)
+}
+
+/// Leads the robot continuously to a state that is rejected, and back.
+fn penetrates<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream, is_honest: bool) -> Option<Plan<D>> {
+    let step = forge.moving(rng)?;
+    let instance = &forge.plan.steps().get(step)?.instance;
+    let until = forge.plan.steps().get(step)?.until;
+    let half = instance.at(forge.m(), 0.5 * until, forge.plan.start());
+    let into = (0..64).find_map(|_| {
+        let there = forge.displaced(&half, ComponentId::Robot, rng)?;
+        rejected(forge.judged, &there, instance).then_some(there)
+    })?;
+    let way_m = forge.m().robot().distance(&half.robot, &into.robot);
+    let robot = into.robot;
+    let change: Change<D> = Arc::new(move |m, t, state| {
+        let share = bump(t);
+        if share > 0.0 {
+            state.robot = m.robot().interpolate(&state.robot, &robot, share);
+        }
+    });
+    // There and back within less than half of the time, while the old motion goes on.
+    forge.changed(step, |length| if is_honest { 10.0 * (length + way_m) } else { 0.0 }, change)
+}
+
+/// The last step ends where the goal is not satisfied, after a motion without jumps.
+fn ends_elsewhere<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream, share: f64) -> Option<Plan<D>> {
+    let last = forge.plan.steps().len().checked_sub(1)?;
+    let (_, end) = forge.ends(last)?;
+    let objects = (0..forge.m().objects().len()).map(|i| ComponentId::Object(ObjectId::new(i)));
+    let mut all: Vec<ComponentId> = objects.chain([ComponentId::Robot]).collect();
+    while !all.is_empty() {
+        let component = all.swap_remove(rng.random_range(0..all.len()));
+        let Some(there) = forge.displaced(end, component, rng) else { continue };
+        let m = forge.m();
+        let change: Change<D> = Arc::new(move |m, t, state| drift(m, state, &there, component, share * t));
+        let mut wrong = end.clone();
+        change(m, 1.0, &mut wrong);
+        if forge.is_goal(&wrong) || component_travel(m, end, &wrong) < LEAST_M * 0.5 {
+            continue;
+        }
+        let far_m = component_travel(m, end, &wrong);
+        return forge.changed(last, |length| length + 4.0 * far_m, change);
+    }
+    None
+}
+
+/// Brings one component of `state` by a share of the way towards where it is in `there`.
+fn drift<D: Domain>(m: &D, state: &mut State<D>, there: &State<D>, component: ComponentId, share: f64) {
+    match component {
+        ComponentId::Robot => state.robot = m.robot().interpolate(&state.robot, &there.robot, share),
+        ComponentId::Object(id) => {
+            if let (Some(space), Some(slot), Some(to)) =
+                (m.objects().get(id.index()), state.objects.get_mut(id.index()), there.object(id))
+            {
+                *slot = space.interpolate(slot, to, share);
+            }
+        }
+    }
+}
+
+fn bystander<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream, comes_back: bool) -> Option<Plan<D>> {
+    let step = forge.moving(rng)?;
+    let id = forge.bystander(step, rng)?;
+    let there = forge.displaced(forge.ends(step)?.0, ComponentId::Object(id), rng)?;
+    let change: Change<D> = Arc::new(move |m, t, state| {
+        let share = if comes_back { bump(t) } else { t };
+        drift(m, state, &there, ComponentId::Object(id), share);
+    });
+    forge.changed(step, |length| 10.0 * (length + 10.0), change)
+}
+
+fn not_a_number<D: Domain>(
+    forge: &Forge<'_, D>,
+    rng: &mut Stream,
+    of_robot: bool,
+    window: (f64, f64),
+) -> Option<Plan<D>> {
+    let step = forge.moving(rng)?;
+    let all = spoilt_states(forge.m(), forge.ends(step)?.1);
+    let of_kind = |bad: &crate::laws::feed::SpoiltState<D>| {
+        (bad.component == ComponentId::Robot) == of_robot && bad.what.contains("NaN")
+    };
+    let mut all: Vec<_> = all.into_iter().filter(of_kind).collect();
+    if all.is_empty() {
+        return None;
+    }
+    let bad = all.swap_remove(rng.random_range(0..all.len())).state;
+    forge.changed(
+        step,
+        |length| length,
+        Arc::new(move |_, t, state| {
+            if is_in(window, t) {
+                if of_robot {
+                    state.robot.clone_from(&bad.robot);
+                } else {
+                    state.objects.clone_from(&bad.objects);
+                }
+            }
+        }),
+    )
+}
+
+fn length<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream, metres: f64) -> Option<Plan<D>> {
+    let step = forge.moving(rng)?;
+    forge.changed(step, |_| metres, Arc::new(|_, _, _| {}))
+}
+
+/// In the second half of a step the mode is already that of the end of the plan, or of its start.
+fn early<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream) -> Option<Plan<D>> {
+    let count = forge.plan.steps().len();
+    let step = rng.random_range(0..count.max(1));
+    let during = forge.plan.at(forge.m(), step, 0.5)?.mode;
+    let ends = [forge.states.last()?, forge.states.first()?];
+    let other = ends
+        .into_iter()
+        .find(|state| state.mode != during && Some(&state.mode) != forge.states.get(step).map(|s| &s.mode))?;
+    let mode = other.mode.clone();
+    // At the end of the last step it may well be right.
+    let is_last = step + 1 == count;
+    forge.changed(
+        step,
+        |length| length,
+        Arc::new(move |_, t, state| {
+            if t > 0.5 && !(is_last && t >= 1.0) {
+                state.mode.clone_from(&mode);
+            }
+        }),
+    )
+}
+
+fn loses<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream) -> Option<Plan<D>> {
+    let step = forge.moving(rng)?;
+    if forge.m().objects().is_empty() {
+        return None;
+    }
+    forge.changed(
+        step,
+        |length| length,
+        Arc::new(|_, t, state| {
+            if t > 0.5 {
+                state.objects.pop();
+            }
+        }),
+    )
+}
+
+/// The robot's first number leaves the space for a while, at a finite speed.
+fn leaves<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream) -> Option<Plan<D>> {
+    let step = forge.moving(rng)?;
+    let robot = forge.m().robot();
+    let start = &forge.ends(step)?.0.robot;
+    let count = crate::laws::feed::count(robot, start);
+    let index = rng.random_range(0..count.max(1));
+    let face = crate::laws::feed::face(robot, start, index, rng.random_bool(0.5));
+    let value = |q: &crate::state::RobotConfig<D>| crate::laws::feed::values(robot, q).get(index).copied();
+    let (x, edge) = (value(start)?, value(&face)?);
+    let beyond = 2.0 * (edge - x) + if edge >= x { 0.5 } else { -0.5 };
+    let outside = crate::laws::feed::with(robot, start, index, x + beyond);
+    // Where a number wraps around, or has no bound, it does not leave.
+    if robot.contains(&outside) || edge == x {
+        return None;
+    }
+    let change: Change<D> = Arc::new(move |m, t, state| {
+        let robot = m.robot();
+        let here = crate::laws::feed::values(robot, &state.robot).get(index).copied().unwrap_or(0.0);
+        let there = here + (x + beyond - here) * bump(t);
+        state.robot = crate::laws::feed::with(robot, &state.robot, index, there);
+    });
+    forge.changed(step, |length| 10.0 * (length + 2.0 * beyond.abs()), change)
+}

@@ -1,0 +1,32 @@
+//! Implementors that break what strangers break: found by looking from outside, at random inputs, in the corners, at what is
+//! no number, and at what is done too much rather than too little.
+
+use super::Case;
+
+mod domains;
+mod goals;
+mod hangs;
+mod motions;
+mod primitives;
+mod spaces;
+mod validities;
+mod verifiers;
+mod wholes;
+
+pub(super) fn cases() -> Vec<Case> {
+    [
+        spaces::cases(),
+        domains::cases(),
+        motions::cases(),
+        primitives::cases(),
+        validities::cases(),
+        goals::cases(),
+        verifiers::cases(),
+        hangs::cases(),
+        wholes::cases(),
+    ]
+    .concat()
+}
+
+/// How many inputs each case draws: the default effort of a property test.
+const CASES: u64 = 256;
