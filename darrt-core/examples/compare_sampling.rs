@@ -30,7 +30,7 @@ fn main() -> Result<(), Error> {
                 reroute: None,
                 try_penalty_m: 0.0,
                 shorten: darrt_core::shorten::ShortenOptions::default(),
-                smooth: darrt_core::smooth::SmoothOptions::default(),
+                improve: None,
             };
             let mut needed: Vec<u64> = (0..seeds).filter_map(|seed| iterations(&problem, &strategy, seed)).collect();
             needed.sort_unstable();

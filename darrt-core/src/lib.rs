@@ -14,6 +14,7 @@
 //! | PATH, `useful`, `propagate` | [`path`](mod@path), [`primitive`] |
 //! | `collision(e_i, M, B)` | [`validity`] |
 //! | V | [`tree`] |
+//! | (beyond the paper) a better plan | [`shorten`], [`improve`] in a [`cost`], [`smooth`] |
 //!
 //! A result is a [`verify::Solution`], and only the independent verifier can make one.
 
@@ -24,6 +25,7 @@ pub mod domain;
 pub mod error;
 pub mod extend;
 pub mod goal;
+pub mod improve;
 pub mod laws;
 pub mod motion;
 pub mod nearest;

@@ -20,6 +20,8 @@ pub enum Purpose {
     Shorten,
     /// Drawing a state of the goal.
     Goal,
+    /// Looking for a plan that takes less time.
+    Improve,
 }
 
 /// The generator for one purpose in one iteration of one attempt.

@@ -12,6 +12,7 @@ use crate::budget::{Interrupt, Stop};
 use crate::distance::Distance;
 use crate::domain::Domain;
 use crate::extend::{ExtendOptions, Extender, Extension};
+use crate::improve::{Improvement, improve};
 use crate::observe::accounts::Accounts;
 use crate::partial::PartialState;
 use crate::plan::Plan;
@@ -20,8 +21,7 @@ use crate::random::{Purpose, stream};
 use crate::reroute::Reroute;
 use crate::sample::Sampler;
 use crate::settle::{Unsettled, settle};
-use crate::shorten::{ShortenOptions, shorten};
-use crate::smooth::{SmoothOptions, smooth};
+use crate::shorten::{ShortenOptions, mended, retraced};
 use crate::state::State;
 use crate::tree::{Edge, NodeId, Tree};
 use crate::validity::Blame;
@@ -49,8 +49,8 @@ pub struct Strategy<D: Domain> {
     pub try_penalty_m: f64,
     /// What is done for a shorter plan once one is found.
     pub shorten: ShortenOptions,
-    /// What is done for less travel once a plan has been verified.
-    pub smooth: SmoothOptions,
+    /// What is done for a plan that takes less time to carry out; `None`: the plan that is found, made shorter, is the result.
+    pub improve: Option<Improvement<D>>,
 }
 
 impl<D: Domain> std::fmt::Debug for Strategy<D> {
@@ -259,27 +259,43 @@ impl<'p, D: Domain> Darrt<'p, D> {
         self.prove_plan(&Plan::to_node(&self.tree, node).ok_or_else(|| Unproved::Refused(lost()))?)
     }
 
-    /// Has a plan verified, made shorter and smoother if it can be, its motions judged if that was put off.
+    /// Has a plan verified, made shorter and better if it can be, its motions judged if that was put off.
     fn prove_plan(&self, plan: &Plan<D>) -> Result<Solution<D>, Unproved<D>> {
         let rng = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Shorten);
-        let extender = self.extender();
-        // A shorter plan that the verifier refuses is no reason to give up the longer one.
-        let short = shorten(&extender, plan, self.strategy.shorten, rng).and_then(|short| self.judge(short).ok());
-        let solution = if let Some(short) = short {
-            short
+        let (extender, options) = (self.extender(), self.strategy.shorten);
+        let short = retraced(&extender, plan, options, rng);
+        let found: Vec<_> = short.iter().chain([plan]).collect();
+        if let Some(better) = self.improved(&found) {
+            return Ok(better);
+        }
+        let short = if extender.options.defer {
+            // What is mended is free, and can be improved although what was found could not.
+            let mended = mended(&extender, plan, short.as_ref(), options, rng);
+            if let Some(better) = mended.as_ref().and_then(|mended| self.improved(&[mended])) {
+                return Ok(better);
+            }
+            mended
         } else {
-            let steps = settle(&extender, plan.start(), plan.steps().iter().cloned(), rng);
-            let steps = steps.map_err(Unproved::Unsettled)?;
-            self.judge(Plan::new(plan.start().clone(), steps)).map_err(Unproved::Refused)?
+            short
         };
-        if self.is_part {
+        // A shorter plan that the verifier refuses is no reason to give up the longer one.
+        if let Some(solution) = short.and_then(|short| self.judge(short).ok()) {
             return Ok(solution);
         }
-        // Nor is a smoother one, one that is too near to something, or time that runs out over it.
-        let options = self.strategy.smooth;
-        let smooth = smooth(&extender, solution.plan(), options, rng).and_then(|plan| self.judge(plan).ok());
-        let is_better = |new: &Solution<D>| options.is_clear_enough(solution.clearance_m(), new.clearance_m());
-        Ok(smooth.filter(is_better).unwrap_or(solution))
+        let steps = settle(&extender, plan.start(), plan.steps().iter().cloned(), rng);
+        let steps = steps.map_err(Unproved::Unsettled)?;
+        self.judge(Plan::new(plan.start().clone(), steps)).map_err(Unproved::Refused)
+    }
+
+    /// A plan better than those found that the verifier accepts, if that is wanted and there is time. Parts of a plan are not
+    /// improved: what comes behind them is not known.
+    fn improved(&self, found: &[&Plan<D>]) -> Option<Solution<D>> {
+        let improvement =
+            self.strategy.improve.as_ref().filter(|_| !self.is_part && self.interrupt.stop().is_none())?;
+        let rng = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Improve);
+        let better = improve(&self.extender(), improvement, found, self.iteration, rng)?;
+        let first = (*found.first()?).clone();
+        self.judge(better).ok().map(|solution| solution.improved_from(first))
     }
 
     fn judge(&self, plan: Plan<D>) -> Result<Solution<D>, Refusal> {

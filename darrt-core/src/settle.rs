@@ -39,33 +39,46 @@ pub fn settle<D: Domain>(
     steps: impl IntoIterator<Item = Step<D>>,
     rng: &mut dyn Rng,
 ) -> Result<Vec<Step<D>>, Unsettled<D>> {
-    let Extender { problem, options, reroute, interrupt } = *extender;
-    if !options.defer {
+    if !extender.options.defer {
         return Ok(steps.into_iter().collect());
     }
-    let (m, validity) = (problem.domain(), problem.validity());
+    let m = extender.problem.domain();
     let mut here = here.clone();
-    let settled = |mut step: Step<D>| {
-        if interrupt.stop() == Some(Stop::Cancelled) {
-            return Err(Unsettled::Cancelled);
-        }
-        let turns = reroute.filter(|r| r.is_free_to_turn(&step.instance));
-        let most = turns.map_or(0, |_| validity.most_care());
-        for care in (0..=most).rev() {
-            let free = validity.free_prefix_with(care, m, &step.instance, &here);
-            let Some(blame) = free.blame.filter(|_| free.fraction < step.until) else { break };
-            let around = turns.and_then(|r| r.reroute(m, validity, care, &step.instance, &here, rng));
-            match around.filter(|around| validity.free_prefix_with(care, m, around, &here).blame.is_none()) {
-                Some(around) => {
-                    step.instance = Arc::new(around);
-                    break;
-                }
-                None if care == 0 => return Err(Unsettled::Blocked(Arc::clone(&step.instance), blame)),
-                None => {}
-            }
-        }
+    let judged = |step: Step<D>| {
+        let (step, _) = settled(extender, &here, step, rng)?;
         here = step.instance.at(m, step.until, &here);
         Ok(step)
     };
-    steps.into_iter().map(settled).collect()
+    steps.into_iter().map(judged).collect()
+}
+
+/// One step that begins at `here`, judged, and how much less care than there can be it is free with; see [`settle`].
+///
+/// # Errors
+/// [`Unsettled`] if it stays blocked.
+pub(crate) fn settled<D: Domain>(
+    extender: &Extender<'_, D>,
+    here: &State<D>,
+    mut step: Step<D>,
+    rng: &mut dyn Rng,
+) -> Result<(Step<D>, usize), Unsettled<D>> {
+    let Extender { problem, reroute, interrupt, .. } = *extender;
+    let (m, validity) = (problem.domain(), problem.validity());
+    if interrupt.stop() == Some(Stop::Cancelled) {
+        return Err(Unsettled::Cancelled);
+    }
+    let turns = reroute.filter(|r| r.is_free_to_turn(&step.instance));
+    let most = turns.map_or(0, |_| validity.most_care());
+    let mut care = most;
+    loop {
+        let free = validity.free_prefix_with(care, m, &step.instance, here);
+        let Some(blame) = free.blame.filter(|_| free.fraction < step.until) else { break };
+        let around = turns.and_then(|r| r.reroute(m, validity, care, &step.instance, here, rng));
+        if let Some(around) = around.filter(|around| validity.free_prefix_with(care, m, around, here).blame.is_none()) {
+            step.instance = Arc::new(around);
+            break;
+        }
+        care = care.checked_sub(1).ok_or_else(|| Unsettled::Blocked(Arc::clone(&step.instance), blame))?;
+    }
+    Ok((step, most - care))
 }

@@ -36,6 +36,17 @@ pub fn shorten<D: Domain>(
     options: ShortenOptions,
     rng: &mut dyn Rng,
 ) -> Option<Plan<D>> {
+    let best = retraced(extender, plan, options, rng);
+    if extender.options.defer { mended(extender, plan, best.as_ref(), options, rng) } else { best }
+}
+
+/// A plan to the goal with fewer steps than `plan`, whose motions have not been judged if the search puts that off.
+pub(crate) fn retraced<D: Domain>(
+    extender: &Extender<'_, D>,
+    plan: &Plan<D>,
+    options: ShortenOptions,
+    rng: &mut dyn Rng,
+) -> Option<Plan<D>> {
     let mut left = options.extensions;
     let mut best: Option<Plan<D>> = None;
     let m = extender.problem.domain();
@@ -47,12 +58,22 @@ pub fn shorten<D: Domain>(
         }
         best = Some(Plan::new(plan.start().clone(), found));
     }
-    if !extender.options.defer {
-        return best;
-    }
+    best
+}
+
+/// The plan that was made `short`, or else the plan itself, with every motion judged and those that are blocked passed by
+/// others.
+pub(crate) fn mended<D: Domain>(
+    extender: &Extender<'_, D>,
+    plan: &Plan<D>,
+    short: Option<&Plan<D>>,
+    options: ShortenOptions,
+    rng: &mut dyn Rng,
+) -> Option<Plan<D>> {
     // What cannot be mended may have been leapt to for nothing: the plan itself has more placements to come through.
+    let m = extender.problem.domain();
     let mut mended = |old: &Plan<D>| mend(extender, &Old::new(m, old), options.extensions, rng);
-    let steps = best.as_ref().and_then(&mut mended).or_else(|| mended(plan))?;
+    let steps = short.and_then(&mut mended).or_else(|| mended(plan))?;
     Some(Plan::new(plan.start().clone(), steps))
 }
 

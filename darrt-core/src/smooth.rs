@@ -5,114 +5,77 @@
 //! two moves of one kind it merges them. Where the objects stand at the second cut as at the first it drops a detour, or a
 //! push and the push back. The rest of the plan stays as it is, and at its end only the goal counts.
 //!
-//! What is new is judged like every other motion of the search, so it keeps the clearance that the search keeps, though the plan
-//! before may have kept more. The verifier judges and measures the whole, and [`SmoothOptions::is_clear_enough`] decides.
+//! What is new is judged with the most [care](crate::validity::Validity::most_care) where it may turn aside: a shortcut that would
+//! give up a margin that plans keep where they can is none. The verifier judges the whole.
 
 use std::sync::Arc;
 
 use rand::{Rng, RngExt};
 
+use crate::cost::ExecutionCost;
 use crate::domain::Domain;
 use crate::extend::{ExtendOptions, Extender};
 use crate::motion::{Section, Spliced};
 use crate::partial::PartialState;
 use crate::plan::{Plan, Step};
-use crate::settle::settle;
+use crate::reroute::Reroute;
 use crate::shorten::joined;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 
-/// Metres of travel below which a gain is none.
-const LEAST_GAIN_M: f64 = 1e-6;
-/// Metres of travel that are put down to rounding.
-const ROUNDING_M: f64 = 1e-9;
+/// Seconds below which a gain is none.
+const LEAST_GAIN_S: f64 = 1e-9;
 /// Steps in which two moves and what they lead to may become one move and that.
 const NEAR: usize = 3;
 
-/// How much effort goes into a smoother plan.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SmoothOptions {
-    /// How many extensions are made at most; 0: the plan stays as it is.
-    pub attempts: usize,
-    /// Clearance, in metres, above which a smoother plan may give some of it away: it takes the place of the plan before only
-    /// if the verifier measures at least this, or as much as before. Infinite: it never gives any away. 0: whatever the
-    /// verifier accepts will do.
-    pub clearance_m: f64,
-}
-
-impl SmoothOptions {
-    /// May a smoother plan with the clearance `after` take the place of one with `before`, both as the verifier measured them
-    /// ([`Verified::clearance_m`](crate::verify::Verified::clearance_m))?
-    ///
-    /// # Laws
-    /// Yes if either was not measured. Else `after` is at least the smaller one of `before` and the bound; one that is no
-    /// number is not.
-    pub fn is_clear_enough(&self, before: Option<f64>, after: Option<f64>) -> bool {
-        let (Some(before), Some(after)) = (before, after) else { return true };
-        after >= before.min(self.clearance_m)
-    }
-}
-
-/// A plan to the goal with fewer steps than `plan` and no more travel, or with less travel and no more steps, if one was
-/// found before the extender is interrupted. Not verified. The motions of `plan` must have been judged.
+/// A plan to the goal that takes fewer seconds than `plan` and no more steps, if one was found in so many `attempts`, an
+/// extension each, and before the extender is interrupted. Not verified. The motions of `plan` must have been judged.
 ///
 /// # Laws
-/// Never more steps, and never more travel but for rounding; pure but for `rng` and the interrupt.
+/// Never more steps or seconds; pure but for `rng` and the interrupt.
 ///
 /// # Source
 /// Geraerts and Overmars, Creating high-quality paths for motion planning, 2007: shortcuts between random states of a path.
 /// Here the shortcut is whatever the primitives propagate, so it may also move objects.
 pub fn smooth<D: Domain>(
     extender: &Extender<'_, D>,
+    cost: &dyn ExecutionCost<D>,
     plan: &Plan<D>,
-    options: SmoothOptions,
+    attempts: usize,
     rng: &mut dyn Rng,
 ) -> Option<Plan<D>> {
-    if options.attempts == 0 {
-        return None;
-    }
-    // A shortcut goes the whole way, also where the search takes short steps; it is judged once it is known to be one.
+    // A shortcut goes the whole way, also where the search takes short steps; it is judged once it is known to be one. One
+    // that needs a way around is none.
     let whole = ExtendOptions { step_m: None, defer: true, ..*extender.options };
     let mut smoother = Smoother {
-        extender: Extender { options: &whole, ..*extender },
+        extender: Extender { options: &whole, reroute: None, ..*extender },
+        may_turn: extender.reroute,
+        cost,
         start: plan.start(),
-        legs: plan.steps().iter().map(|step| Leg::of(step.clone())).collect(),
-        left: options.attempts,
+        legs: Vec::new(),
+        left: attempts,
         has_gained: false,
     };
+    smoother.legs = plan.steps().iter().map(|step| smoother.leg(step.clone())).collect();
     smoother.drop_detours(rng);
     smoother.cut_corners(rng);
     let Smoother { legs, has_gained, .. } = smoother;
     has_gained.then(|| Plan::new(plan.start().clone(), legs.into_iter().map(|leg| leg.step).collect()))
 }
 
-/// A step, and the parts of instances that it is made of.
+/// A step, the parts of instances that it is made of, and the seconds that it takes.
 struct Leg<D: Domain> {
     step: Step<D>,
     sections: Vec<Section<D>>,
+    seconds: f64,
 }
 
 impl<D: Domain> Clone for Leg<D> {
     fn clone(&self) -> Self {
-        Self { step: self.step.clone(), sections: self.sections.clone() }
+        Self { step: self.step.clone(), sections: self.sections.clone(), seconds: self.seconds }
     }
 }
 
 impl<D: Domain> Leg<D> {
-    fn of(step: Step<D>) -> Self {
-        let section = Section { instance: Arc::clone(&step.instance), from: 0.0, to: step.until };
-        Self { step, sections: vec![section] }
-    }
-
-    /// The step that runs `sections`, called, touching and moving what `like` does.
-    fn through(sections: Vec<Section<D>>, like: &Step<D>) -> Option<Self> {
-        if let [Section { instance, from: 0.0, to }] = sections.as_slice() {
-            let step = Step { instance: Arc::clone(instance), until: *to, primitive: like.primitive };
-            return Some(Self { step, sections });
-        }
-        let spliced = Spliced::instance(sections.clone(), &like.instance)?;
-        Some(Self { step: Step { instance: Arc::new(spliced), until: 1.0, primitive: like.primitive }, sections })
-    }
-
     fn length(&self) -> f64 {
         self.step.instance.motion.length() * self.step.until
     }
@@ -126,8 +89,8 @@ impl<D: Domain> Leg<D> {
         self.step.instance.reversible
     }
 
-    /// What it does up to `metres` of its travel, and what then; `None` if that is one of its ends.
-    fn split(&self, metres: f64) -> Option<(Self, Self)> {
+    /// The parts up to `metres` of its travel, and from there on; `None` if that is one of its ends.
+    fn split(&self, metres: f64) -> Option<[Vec<Section<D>>; 2]> {
         let mut before = Vec::new();
         let mut left_m = metres;
         for (i, section) in self.sections.iter().enumerate() {
@@ -144,7 +107,7 @@ impl<D: Domain> Leg<D> {
             }
             after.push(Section { from: cut.max(section.from), ..section.clone() });
             after.extend(self.sections.iter().skip(i + 1).cloned());
-            return Some((Self::through(before, &self.step)?, Self::through(after, &self.step)?));
+            return Some([before, after]);
         }
         None
     }
@@ -165,6 +128,9 @@ impl Cut {
 
 struct Smoother<'a, D: Domain> {
     extender: Extender<'a, D>,
+    /// Knows which motions may turn aside.
+    may_turn: Option<&'a dyn Reroute<D>>,
+    cost: &'a dyn ExecutionCost<D>,
     start: &'a State<D>,
     legs: Vec<Leg<D>>,
     /// Attempts that are left.
@@ -173,6 +139,29 @@ struct Smoother<'a, D: Domain> {
 }
 
 impl<D: Domain> Smoother<'_, D> {
+    fn leg(&self, step: Step<D>) -> Leg<D> {
+        let section = Section { instance: Arc::clone(&step.instance), from: 0.0, to: step.until };
+        self.timed(step, vec![section])
+    }
+
+    fn timed(&self, step: Step<D>, sections: Vec<Section<D>>) -> Leg<D> {
+        let m = self.extender.problem.domain();
+        let from = step.instance.at(m, 0.0, self.start);
+        let seconds = self.cost.seconds(m, &step.instance, &from, step.until);
+        Leg { step, sections, seconds }
+    }
+
+    /// The step that runs `sections`, called, touching and moving what `like` does.
+    fn through(&self, sections: Vec<Section<D>>, like: &Step<D>) -> Option<Leg<D>> {
+        if let [Section { instance, from: 0.0, to }] = sections.as_slice() {
+            let step = Step { instance: Arc::clone(instance), until: *to, primitive: like.primitive };
+            return Some(self.timed(step, sections));
+        }
+        let spliced = Spliced::instance(sections.clone(), &like.instance)?;
+        let step = Step { instance: Arc::new(spliced), until: 1.0, primitive: like.primitive };
+        Some(self.timed(step, sections))
+    }
+
     /// Between the ends of steps at which the objects stand alike, or within one transfer; the farthest apart first. Also
     /// between those so near that a move and what it leads to lie between them.
     fn drop_detours(&mut self, rng: &mut dyn Rng) {
@@ -258,9 +247,7 @@ impl<D: Domain> Smoother<'_, D> {
     fn replace(&mut self, from: Cut, to: Cut, rng: &mut dyn Rng) -> bool {
         self.left = self.left.saturating_sub(1);
         let Some(legs) = self.rewritten(from, to, rng) else { return false };
-        let (old, new) = ((self.legs.len(), length(&self.legs)), (legs.len(), length(&legs)));
-        let is_better =
-            if new.0 < old.0 { new.1 <= old.1 + ROUNDING_M } else { new.0 == old.0 && new.1 < old.1 - LEAST_GAIN_M };
+        let is_better = legs.len() <= self.legs.len() && seconds(&legs) < seconds(&self.legs) - LEAST_GAIN_S;
         if is_better {
             self.legs = legs;
             self.has_gained = true;
@@ -285,13 +272,11 @@ impl<D: Domain> Smoother<'_, D> {
         let target = PartialState::anywhere(m).with_robot(m, there.robot.clone());
         let target = named.fold(target, |target, (id, at)| target.with_object(id, at));
         let old = self.legs.get(from.leg..to.leg)?;
-        let old_m = length(old) + to.metres - from.metres;
+        // What the cuts leave of their legs is not replaced.
+        let kept_s = before.as_ref().map_or(0.0, |leg| leg.seconds);
+        let old_s = seconds(old) + until.as_ref().map_or(0.0, |leg| leg.seconds) - kept_s;
         let arrives = |state: &State<D>| *state == there || is_end && self.is_goal(state);
-        let pays = |steps: &[Step<D>]| {
-            let new_m: f64 = steps.iter().map(|step| step.instance.motion.length() * step.until).sum();
-            new_m < old_m - LEAST_GAIN_M || (steps.len() < old.len() && new_m <= old_m + ROUNDING_M)
-        };
-        let new = self.way(&here, &target, arrives, pays, rng)?.into_iter().map(Leg::of);
+        let new = self.way(&here, &target, arrives, old_s, rng)?;
 
         // The neighbours may be of the same kind as what is new.
         let first = from.leg.saturating_sub(1);
@@ -306,30 +291,47 @@ impl<D: Domain> Smoother<'_, D> {
     /// What the cut leg does before the cut and after it; `None` for nothing, and for a cut between two legs.
     fn parts_of(&self, cut: Cut) -> (Option<Leg<D>>, Option<Leg<D>>) {
         let leg = self.legs.get(cut.leg).filter(|_| cut.metres > 0.0);
-        leg.and_then(|leg| leg.split(cut.metres)).unzip()
+        let parts = leg.and_then(|leg| Some((leg, leg.split(cut.metres)?)));
+        let Some((leg, [before, after])) = parts else { return (None, None) };
+        (self.through(before, &leg.step), self.through(after, &leg.step))
     }
 
     fn is_goal(&self, state: &State<D>) -> bool {
         self.extender.problem.goal().is_satisfied(self.extender.problem.domain(), state)
     }
 
-    /// Steps from `here` towards `target`, up to the first state where `arrives` says so; judged if it `pays`.
+    /// Legs from `here` towards `target`, up to the first state where `arrives` says so, if they take less than `old_s` and
+    /// are free.
     fn way(
         &self,
         here: &State<D>,
         target: &PartialState<D>,
         arrives: impl Fn(&State<D>) -> bool,
-        pays: impl Fn(&[Step<D>]) -> bool,
+        old_s: f64,
         rng: &mut dyn Rng,
-    ) -> Option<Vec<Step<D>>> {
+    ) -> Option<Vec<Leg<D>>> {
         if arrives(here) {
             return Some(Vec::new());
         }
         let mut reached = self.extender.extend(here, target, rng).reached;
         let last = reached.iter().position(|reached| arrives(&reached.state))?;
         reached.truncate(last + 1);
-        let steps = joined(reached);
-        if pays(&steps) { settle(&self.extender, here, steps, rng).ok() } else { None }
+        let legs: Vec<_> = joined(reached).into_iter().map(|step| self.leg(step)).collect();
+        // Joined to its neighbours it may take one start and stop less on either side.
+        let pays = seconds(&legs) < old_s + 2.0 * self.cost.step_s();
+        (pays && self.is_free(here, &legs)).then_some(legs)
+    }
+
+    fn is_free(&self, here: &State<D>, legs: &[Leg<D>]) -> bool {
+        let (m, validity) = (self.extender.problem.domain(), self.extender.problem.validity());
+        let mut here = here.clone();
+        legs.iter().all(|Leg { step, .. }| {
+            let turns = self.may_turn.is_some_and(|reroute| reroute.is_free_to_turn(&step.instance));
+            let care = if turns { validity.most_care() } else { 0 };
+            let free = validity.free_prefix_with(care, m, &step.instance, &here);
+            step.instance.motion.at_into(m, step.until, &mut here);
+            free.blame.is_none() || free.fraction >= step.until
+        })
     }
 
     /// The same legs, those of one kind that follow on each other as one.
@@ -360,7 +362,7 @@ impl<D: Domain> Smoother<'_, D> {
         if !is_one_mode || !begins_there {
             return None;
         }
-        let union = Leg::through(a.sections.iter().chain(&b.sections).cloned().collect(), &like.step)?;
+        let union = self.through(a.sections.iter().chain(&b.sections).cloned().collect(), &like.step)?;
         let from = a.step.instance.at(m, 0.0, self.start);
         let free = self.extender.problem.validity().free_prefix(m, &union.step.instance, &from);
         (free.blame.is_none() && free.fraction >= 1.0).then_some(union)
@@ -383,4 +385,9 @@ fn touching_more<'a, D: Domain>(a: &'a Leg<D>, b: &'a Leg<D>) -> Option<&'a Leg<
 /// Metres of travel.
 fn length<D: Domain>(legs: &[Leg<D>]) -> f64 {
     legs.iter().map(Leg::length).sum()
+}
+
+/// Seconds of execution.
+fn seconds<D: Domain>(legs: &[Leg<D>]) -> f64 {
+    legs.iter().map(|leg| leg.seconds).sum()
 }

@@ -55,18 +55,20 @@ pub trait Verifier<D: Domain>: Send + Sync {
 pub struct Solution<D: Domain> {
     plan: Plan<D>,
     verified: Verified,
+    found: Option<Plan<D>>,
 }
 
 impl<D: Domain> Clone for Solution<D> {
     fn clone(&self) -> Self {
-        Self { plan: self.plan.clone(), verified: self.verified.clone() }
+        Self { plan: self.plan.clone(), verified: self.verified.clone(), found: self.found.clone() }
     }
 }
 
 // Not derived: that would ask the domain to be printable.
 impl<D: Domain> fmt::Debug for Solution<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Solution").field("plan", &self.plan).field("verified", &self.verified).finish()
+        let Self { plan, verified, found } = self;
+        f.debug_struct("Solution").field("plan", plan).field("verified", verified).field("found", found).finish()
     }
 }
 
@@ -83,7 +85,7 @@ impl<D: Domain> Solution<D> {
         plan: Plan<D>,
     ) -> Result<Self, Refusal> {
         let verified = verifier.verify(m, start, goal, &plan)?;
-        Ok(Self { plan, verified })
+        Ok(Self { plan, verified, found: None })
     }
 
     /// The plan.
@@ -94,6 +96,16 @@ impl<D: Domain> Solution<D> {
     /// The smallest distance that the verifier saw, metres; `None` if it does not measure it.
     pub fn clearance_m(&self) -> Option<f64> {
         self.verified.clearance_m
+    }
+
+    /// The plan that was found first, if this one was made from it. Its motions may not have been judged: where one is
+    /// blocked, the way around is longer.
+    pub fn found(&self) -> Option<&Plan<D>> {
+        self.found.as_ref()
+    }
+
+    pub(crate) fn improved_from(self, found: Plan<D>) -> Self {
+        Self { found: Some(found), ..self }
     }
 
     /// The plan, and all that the verifier said of it.

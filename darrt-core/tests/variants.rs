@@ -3,9 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "a test says no more than that it failed")]
 
 use darrt_core::budget::{Budget, Stop};
+use darrt_core::cost::{TravelCost, plan_seconds};
 use darrt_core::distance::{ApproachVisit, Distance, Weighted};
 use darrt_core::domain::Domain;
 use darrt_core::extend::{ExtendOptions, Extender, extend_towards};
+use darrt_core::improve::{ImproveOptions, Improvement};
 use darrt_core::laws::planner::{check_accounts, check_cancel};
 use darrt_core::laws::{MotionClaims, check_distance, check_motion, check_planner};
 use darrt_core::motion::{Instance, Motion, Reversed};
@@ -15,7 +17,6 @@ use darrt_core::problem::Problem;
 use darrt_core::random::{Purpose, stream};
 use darrt_core::sample::{Frontier, GoalBiased, Placed, RobotOrObjects, Sampler};
 use darrt_core::search::{Algorithm, Strategy};
-use darrt_core::smooth::SmoothOptions;
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve, solve_with};
 use darrt_core::space::{ComponentSpace, Place};
 use darrt_core::state::{ComponentSet, ObjectId, State};
@@ -300,20 +301,22 @@ fn the_way_to_the_contact_is_a_distance_and_not_below_the_greedy_tour() {
 }
 
 #[test]
-fn smoothing_changes_the_plan_and_not_the_search() {
+fn improvement_changes_the_plan_and_not_the_search() {
     let problem = problems::two_pucks().unwrap();
     for algorithm in Algorithm::ALL {
-        let planned = |attempts| {
-            let strategy = Strategy {
-                smooth: SmoothOptions { attempts, ..SmoothOptions::default() },
-                ..paper_strategy().unwrap()
-            };
+        let planned = |draws_per_step| {
+            let effort = ImproveOptions { draws_per_step, draws_per_iteration: 1.0, shortcuts_per_step: 4 };
+            let improve =
+                (draws_per_step > 0).then(|| Improvement { cost: Box::new(TravelCost::default()), options: effort });
+            let strategy = Strategy { improve, ..paper_strategy().unwrap() };
             let members = [Member { algorithm, strategy: &strategy }];
             solve_with(&problem, &members, Until::Solved, &options(3, 20_000), &mut Silent)
         };
-        let (plain, smooth) = (planned(0), planned(50));
-        assert_eq!(smooth.iterations, plain.iterations, "{algorithm:?}");
-        let steps = |outcome: &Outcome<PuckWorld>| outcome.solution.as_ref().unwrap().plan().steps().len();
-        assert!(steps(&smooth) <= steps(&plain), "{algorithm:?}");
+        let (plain, better) = (planned(0), planned(4));
+        assert_eq!(better.iterations, plain.iterations, "{algorithm:?}");
+        let seconds = |outcome: &Outcome<PuckWorld>| {
+            plan_seconds(&TravelCost::default(), problem.domain(), outcome.solution.as_ref().unwrap().plan())
+        };
+        assert!(seconds(&better) <= seconds(&plain) + 1e-9, "{algorithm:?}");
     }
 }

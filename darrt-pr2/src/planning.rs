@@ -8,6 +8,7 @@ use darrt_core::cost::plan_seconds;
 use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
 use darrt_core::extend::ExtendOptions;
 use darrt_core::goal::Goal;
+use darrt_core::improve::{ImproveOptions, Improvement};
 use darrt_core::observe::Observer;
 use darrt_core::observe::accounts::Accounts;
 use darrt_core::plan::Plan;
@@ -15,7 +16,6 @@ use darrt_core::problem::{Parts, Problem};
 use darrt_core::sample::{Full, GoalBiased, Placed, RandomSubset, RobotOrObjects, Sampler};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
-use darrt_core::smooth::SmoothOptions;
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
 use darrt_core::space::Place;
 use darrt_core::verify::{Refusal, Solution, Verified, Verifier};
@@ -68,9 +68,9 @@ pub struct PlanRequest {
     /// Go on until the budget ends, and keep the plan that is the cheapest in this; `None`: end with the first plan.
     /// Attempts are restarted after 2000 iterations if nothing says when.
     pub improve: Option<Cost>,
-    /// Extensions that are made at most to make a plan that has been found smoother; 0: none. The smoother plan has at least
-    /// the clearance that the search keeps, or that of the plan before; when plans are improved in clearance, the latter.
-    pub smooth: usize,
+    /// Leave plans as they are found, and do not look for ones that take less time to carry out. So it is too when they are
+    /// improved in clearance.
+    pub as_found: bool,
     /// Draw where the robot stands from its inverse reachability model, not from a ring around the hand's pose; see
     /// [`with_bases_from_reachability`](crate::robot::Pr2::with_bases_from_reachability).
     pub bases_from_reachability: bool,
@@ -92,7 +92,7 @@ impl PlanRequest {
             distance: None,
             algorithms: vec![Algorithm::default()],
             improve: None,
-            smooth: 0,
+            as_found: false,
             bases_from_reachability: false,
             adjust: None,
         }
@@ -108,6 +108,9 @@ pub struct PlanResult {
     pub proof: Option<Proof>,
     /// Seconds that carrying it out takes, see [`ExecutionTime`].
     pub execution_s: Option<f64>,
+    /// The plan that was found before it was improved, with the seconds of its straight ways: where one is blocked, the way
+    /// around takes longer. `None` if the plan is as it was found.
+    pub found: Option<(PlanFile, f64)>,
     /// How many plans were found, of which it is the cheapest; at most 1 unless plans were to be improved.
     pub plans: u64,
     /// What the problem itself puts nearer to each other than the least margin.
@@ -216,7 +219,9 @@ pub fn plan(request: &PlanRequest, cancel: &Cancel, observer: &mut dyn Observer)
     let prepared = prepare_watched(request, cancel, &watch)?;
     let (sampler, distance) = chosen(request);
     let mut strategy = strategy(&request.problem.sampling, sampler, distance)?;
-    strategy.smooth = smoothing(request, prepared.problem.domain());
+    if request.as_found || request.improve == Some(Cost::Clearance) {
+        strategy.improve = None;
+    }
     if let Some(adjust) = request.adjust {
         adjust(&mut strategy);
     }
@@ -264,13 +269,17 @@ fn result(
         distance,
         searches: request.algorithms.iter().filter_map(|algorithm| SearchName::of(*algorithm)).collect(),
         improve: request.improve.map(Into::into),
-        smooth: request.smooth as u64,
+        as_found: request.as_found,
         iterations: outcome.iterations,
         restarts: outcome.restarts,
         nodes: outcome.nodes as u64,
     };
     let m = prepared.problem.domain();
     let execution_s = outcome.solution.as_ref().map(|solution| plan_seconds(&ExecutionTime, m, solution.plan()));
+    let found = outcome.solution.as_ref().and_then(Solution::found).map(|plan| {
+        let file = prepared.exporter.export(m, plan, request.seed, facts.clone());
+        (file, plan_seconds(&ExecutionTime, m, plan))
+    });
     let judged = outcome.solution.map(Solution::into_parts).and_then(|(plan, verified)| {
         let judged = verified.evidence?.downcast().ok()?;
         Some((plan, Arc::<Judged>::unwrap_or_clone(judged)))
@@ -284,6 +293,7 @@ fn result(
         plan,
         proof,
         execution_s,
+        found,
         plans: 0,
         near: prepared.near.clone(),
         stop: outcome.stop,
@@ -296,14 +306,6 @@ fn result(
         times: Times::default(),
         last_refusal: outcome.last_refusal,
     }
-}
-
-/// A smoother plan keeps what the search keeps; one that is chosen for its clearance gives none away.
-fn smoothing(request: &PlanRequest, m: &World) -> SmoothOptions {
-    let is_for_clearance = request.improve == Some(Cost::Clearance);
-    let wanted_m = m.settings().safety.robot_margin_m;
-    let clearance_m = if is_for_clearance { f64::INFINITY } else { wanted_m };
-    SmoothOptions { attempts: request.smooth, clearance_m }
 }
 
 fn chosen(request: &PlanRequest) -> (SamplerName, DistanceName) {
@@ -340,7 +342,7 @@ pub fn strategy(
         reroute: Some(Box::new(Detour::default())),
         try_penalty_m: TRY_PENALTY,
         shorten: ShortenOptions { extensions: SHORTENING },
-        smooth: SmoothOptions::default(),
+        improve: Some(Improvement { cost: Box::new(ExecutionTime), options: ImproveOptions::default() }),
     })
 }
 

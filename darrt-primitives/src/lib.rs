@@ -13,6 +13,7 @@
 //! | how long are straight lines of the hand? | [`length_range`] |
 //! | who may touch whom, and what is too near? | [`surroundings`] |
 //! | what is in the way, and is there a way around? | [`validity`], [`detour`], [`base_path`] |
+//! | how long does a plan take? | [`execution_time`] |
 //! | what is asked for, and what is a goal? | [`wish`], [`goal`] |
 //! | is my robot right? | [`laws`], and `testing` (feature `testing`) |
 //!

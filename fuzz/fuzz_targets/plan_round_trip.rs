@@ -17,7 +17,7 @@ struct PlanSketch {
     variants: [u8; 2],
     searches: Vec<u8>,
     improve: Option<u8>,
-    smooth: u64,
+    as_found: bool,
     start: WaypointSketch,
     steps: Vec<StepSketch>,
 }
@@ -93,7 +93,7 @@ impl PlanSketch {
                 distance: pick(&distances, self.variants[1]),
                 searches: self.searches.iter().map(|which| pick(&SearchName::ALL, *which)).collect(),
                 improve: self.improve.map(|which| pick(&costs, which)),
-                smooth: self.smooth,
+                as_found: self.as_found,
                 iterations: self.counts[0],
                 restarts: self.counts[1],
                 nodes: self.counts[2],

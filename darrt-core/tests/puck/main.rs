@@ -11,6 +11,8 @@ mod deferred;
 #[cfg(test)]
 mod extension;
 #[cfg(test)]
+mod improved;
+#[cfg(test)]
 mod misbehaviour;
 #[cfg(test)]
 mod path;
@@ -26,7 +28,6 @@ mod refusals;
 mod replay;
 #[cfg(test)]
 mod shortened;
-#[cfg(test)]
 mod smoothed;
 #[cfg(test)]
 mod solved;

@@ -46,7 +46,7 @@ fn poisoned_samples_leave_no_trace_in_the_tree() {
             reroute: None,
             try_penalty_m: 0.0,
             shorten: darrt_core::shorten::ShortenOptions::default(),
-            smooth: darrt_core::smooth::SmoothOptions::default(),
+            improve: None,
         };
         let mut darrt = Darrt::new(&problem, &strategy, 0, 0, usize::MAX);
         for _ in 0..200 {

@@ -54,7 +54,7 @@ pub(crate) fn strategy(
         reroute: None,
         try_penalty_m: 0.0,
         shorten: darrt_core::shorten::ShortenOptions::default(),
-        smooth: darrt_core::smooth::SmoothOptions::default(),
+        improve: None,
     }
 }
 

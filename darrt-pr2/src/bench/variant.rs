@@ -117,13 +117,14 @@ pub const VARIANTS: [Variant; 30] = [
         r.algorithms = Algorithm::ALL.to_vec();
         r.restart = Some(300);
     }),
-    variant("smooth", "every plan is made smoother in up to 100 extensions", |r| r.smooth = 100),
+    variant("no-improve", "plans stay as they are found", |r| r.as_found = true),
     variant("no-restarts", "one tree until the end", |r| r.problem.budget.restart_iterations = None),
     variant("restart-300", "a new tree every 300 iterations", |r| r.restart = Some(300)),
     variant("paper", "Algorithm 1 as printed: straight lines, plain arg min, fine steps, no shortening", |r| {
         r.sampler = Some(SamplerName::RobotOrObjects);
         r.distance = Some(DistanceName::Greedy);
         r.problem.sampling.edge_share = 0.0;
+        r.as_found = true;
         r.adjust = Some(|s| {
             s.reroute = None;
             s.try_penalty_m = 0.0;

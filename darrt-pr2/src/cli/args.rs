@@ -72,22 +72,26 @@ Examples:
   darrt plan mine.toml --stats                      see where the attempts end
 
 The same problem, seed and options give the same plan file byte for byte, with any number
-of threads, as long as the time limit is not what ends the search or the smoothing.
+of threads, as long as the time limit is not what ends the search or the improvement.
 
 Every attempt ends at a restart; --improve and --search portfolio need them, and begin a new
 attempt after 2000 iterations if neither the problem nor --restart says when. The share of an
 attempt in --iterations is all that it may use until its restart, also when it needs less.
-After Ctrl-C, --improve gives the best plan so far, and --smooth the plan as it is then: the
-first line says that it was interrupted, and the exit code is 0, because there is a plan.
+After Ctrl-C, --improve gives the best plan so far: the first line says that it was interrupted,
+and the exit code is 0, because there is a plan.
 
 --search portfolio: the first attempt is darrt, then connect, hierarchical, hierarchical-connect
 and so on, so a short --restart brings the others in.
-Travel, here and for --smooth, is a bound on the ways of all points of the robot and of what it
+Every plan that is found is improved in the seconds that it takes to carry out, with a number of
+attempts that its steps decide, before it is verified; --no-improve leaves that out, and so does
+--improve clearance. --improve COST chooses among several plans.
+Travel is a bound on the ways of all points of the robot and of what it
 moves: with less of it the base alone may go farther.";
 
 /// Options of `darrt plan`.
 #[derive(Debug, Args)]
 #[command(after_help = PLAN_EXAMPLES)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of the command line")]
 pub struct PlanOptions {
     /// Name of a built-in problem, or a problem file
     pub problem: String,
@@ -112,12 +116,12 @@ pub struct PlanOptions {
     /// Which search; the attempts of `portfolio` take all of them in turn
     #[arg(long, value_enum, default_value_t = SearchChoice::Darrt)]
     pub search: SearchChoice,
-    /// Go on until the limit, and keep the plan with the fewest steps, the shortest travel or the most clearance
+    /// Plan anew until the limit, and keep the plan with the fewest steps, the shortest travel or the most clearance
     #[arg(long, value_enum, value_name = "COST")]
     pub improve: Option<ImproveChoice>,
-    /// Extensions that are spent on making a plan smoother: shortcuts, moves in one, no pushes back and forth
-    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
-    pub smooth: u64,
+    /// Leave plans as they are found: not fewer steps, nearer stops and shorter ways
+    #[arg(long)]
+    pub no_improve: bool,
     /// Attempts that run at the same time, 1 to 256; helps only with restarts
     #[arg(long, default_value_t = 1, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
     pub threads: usize,

@@ -96,6 +96,7 @@ mod tests {
         let result = PlanResult {
             proof: None,
             execution_s: None,
+            found: None,
             plan: None,
             plans: 0,
             near: Vec::new(),

@@ -10,7 +10,7 @@ use super::exit::{Exit, Failure};
 use super::output::{self, Output};
 use super::progress::Progress;
 use super::{check, diagnosis, safety, statistics, steps};
-use crate::picture::{self, Extent, Format, Story};
+use crate::picture::{self, Extent, Format, Story, Travel};
 use crate::plan_file::PlanFile;
 use crate::planning::{self, PlanRequest, PlanResult};
 use crate::problem_file::ProblemFile;
@@ -39,6 +39,9 @@ pub(super) fn run(options: &PlanOptions, output: &mut Output) -> Result<Exit, Fa
     files.write(plan, &story)?;
     if !options.quiet {
         output.print(&summary(&request, &result, cancel.is_cancelled()))?;
+        if let Some(words) = improvement(&result, &story)? {
+            output.print(&words)?;
+        }
         output.print(&steps::table(&story))?;
         output.print(&check::words(proof))?;
         output.print(&safety::margins(&request.problem))?;
@@ -63,7 +66,7 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
         distance: options.distance.map(Into::into),
         algorithms: options.search.algorithms(),
         improve: options.improve.map(Into::into),
-        smooth: usize::try_from(options.smooth).unwrap_or(usize::MAX),
+        as_found: options.no_improve,
         bases_from_reachability: false,
         adjust: None,
     }
@@ -106,6 +109,29 @@ fn summary(request: &PlanRequest, result: &PlanResult, is_interrupted: bool) -> 
         counted(result.restarts, "restart"),
         counted(result.nodes as u64, "node")
     )
+}
+
+/// What improving the plan did; `None` if it is as it was found.
+///
+/// # Errors
+/// The plan that was found cannot be told.
+fn improvement(result: &PlanResult, story: &Story) -> Result<Option<String>, Failure> {
+    let (Some((found, found_s)), Some(seconds)) = (&result.found, result.execution_s) else { return Ok(None) };
+    let before = Story::of_plan(found)?;
+    let [from, to] = [&before, story]
+        .map(|story| story.steps.iter().fold(Travel::default(), |sum, step| sum.plus(&Travel::of(story, step))));
+    Ok(Some(format!(
+        "improved: {} to {} steps, {:.1} to {:.1} m driven, {:.0} to {:.0} degrees turned, {:.0} to {:.0} rad of arm travel, \
+         {found_s:.0} to {seconds:.0} s (before: not counting ways around what is blocked)",
+        before.steps.len(),
+        story.steps.len(),
+        from.base_m,
+        to.base_m,
+        from.base_turn.to_degrees(),
+        to.base_turn.to_degrees(),
+        from.arm_turn,
+        to.arm_turn,
+    )))
 }
 
 /// The files to write, checked before the work.

@@ -21,9 +21,9 @@ pub struct PlannerFacts {
     /// In what the plan is the best of all that were found; missing if it is the first one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub improve: Option<CostName>,
-    /// Extensions that were allowed for making it smoother; missing if none were.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub smooth: u64,
+    /// Was it left as it was found? Missing if it was improved, and in files of older programs.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub as_found: bool,
     /// Iterations in all, those before a restart included.
     pub iterations: u64,
     /// How often the planner started over.
@@ -33,8 +33,8 @@ pub struct PlannerFacts {
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
-fn is_zero(count: &u64) -> bool {
-    *count == 0
+fn is_false(flag: &bool) -> bool {
+    !*flag
 }
 
 /// A search.
@@ -110,7 +110,7 @@ mod tests {
     fn what_older_programs_did_not_say_is_neither_asked_for_nor_made_up() {
         let old = r#"{"sampler":"full","distance":"greedy","iterations":10,"restarts":1,"nodes":5}"#;
         let facts: PlannerFacts = serde_json::from_str(old).unwrap();
-        assert!(facts.searches.is_empty() && facts.improve.is_none() && facts.smooth == 0);
+        assert!(facts.searches.is_empty() && facts.improve.is_none() && !facts.as_found);
         assert_eq!(serde_json::to_string(&facts).unwrap(), old);
     }
 
@@ -119,18 +119,16 @@ mod tests {
         let all = PlannerFacts {
             searches: SearchName::ALL.to_vec(),
             improve: Some(CostName::Clearance),
-            smooth: u64::MAX,
+            as_found: true,
             ..PlannerFacts::default()
         };
         let text = serde_json::to_string(&all).unwrap();
-        for words in
-            [r#""searches":["darrt","connect","#, r#""improve":"clearance""#, r#""smooth":18446744073709551615"#]
-        {
+        for words in [r#""searches":["darrt","connect","#, r#""improve":"clearance""#, r#""as_found":true"#] {
             assert!(text.contains(words), "{text}");
         }
         assert_eq!(serde_json::from_str::<PlannerFacts>(&text).unwrap(), all);
         for wrong in
-            [text.replace("connect", "conect"), text.replace("clearance", "room"), text.replace("smooth", "smoth")]
+            [text.replace("connect", "conect"), text.replace("clearance", "room"), text.replace("as_found", "as_fund")]
         {
             assert!(serde_json::from_str::<PlannerFacts>(&wrong).is_err(), "{wrong}");
         }

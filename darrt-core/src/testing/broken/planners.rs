@@ -65,7 +65,7 @@ fn check(change: impl FnOnce(&mut Parts<Bench>), sampler: Box<dyn Sampler<Bench>
         reroute: None,
         try_penalty_m: 0.0,
         shorten: crate::shorten::ShortenOptions::default(),
-        smooth: crate::smooth::SmoothOptions::default(),
+        improve: None,
     };
     match Problem::new(parts) {
         Ok(problem) => check_planner(&problem, &strategy, &options()),
@@ -225,7 +225,7 @@ fn cancelled(run: Solve) -> Result<(), Broken> {
         reroute: None,
         try_penalty_m: 0.0,
         shorten: crate::shorten::ShortenOptions::default(),
-        smooth: crate::smooth::SmoothOptions::default(),
+        improve: None,
     };
     let problem = Problem::new(parts)
         .map_err(|error| Broken::new("planner.problem: the problem is well formed", error.to_string(), "no error"))?;

@@ -164,6 +164,6 @@ pub fn paper_strategy() -> Result<Strategy<PuckWorld>, Error> {
         reroute: None,
         try_penalty_m: 0.0,
         shorten: crate::shorten::ShortenOptions::default(),
-        smooth: crate::smooth::SmoothOptions::default(),
+        improve: None,
     })
 }

@@ -32,7 +32,7 @@ pub(in crate::plan_file) fn sample() -> PlanFile {
             distance: DistanceName::Greedy,
             searches: vec![SearchName::Darrt, SearchName::Connect],
             improve: Some(CostName::Steps),
-            smooth: 100,
+            as_found: true,
             iterations: 10,
             restarts: 1,
             nodes: 5,

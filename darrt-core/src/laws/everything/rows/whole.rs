@@ -99,7 +99,7 @@ fn default_strategy<D: Domain>() -> Option<Strategy<D>> {
         reroute: None,
         try_penalty_m: 0.0,
         shorten: crate::shorten::ShortenOptions::default(),
-        smooth: crate::smooth::SmoothOptions::default(),
+        improve: None,
     })
 }
 

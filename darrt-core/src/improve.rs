@@ -1,0 +1,108 @@
+//! A plan that takes less time to carry out than the one that was found.
+//!
+//! | stage | file |
+//! |---|---|
+//! | the plan becomes a graph of manipulations and of ways between them | `pieces`, `roadmap` |
+//! | manipulations are drawn anew, nearer to those before and behind them, or leading farther | `draw` |
+//! | the cheapest chain is judged until every motion of it is free | `judge` |
+//! | shortcuts between any two of its states | [`smooth`](crate::smooth) |
+//!
+//! The effort is counted in extensions, and no clock is read: the same plan and the same random numbers give the same result.
+
+mod draw;
+mod judge;
+mod pieces;
+mod roadmap;
+
+use std::fmt;
+
+use rand::Rng;
+
+use crate::cost::ExecutionCost;
+use crate::domain::Domain;
+use crate::extend::{ExtendOptions, Extender};
+use crate::plan::Plan;
+use crate::smooth::smooth;
+use roadmap::{Roadmap, START};
+
+/// How many draws are made between two looks at what the cheapest chain costs.
+const DRAWS_BETWEEN: usize = 32;
+
+/// How much effort goes into a better plan: it goes with the work that finding it took.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImproveOptions {
+    /// Extensions that draw manipulations anew, for every step of the plan that was found.
+    pub draws_per_step: usize,
+    /// More of them, for every iteration of the search; at least 0.
+    pub draws_per_iteration: f64,
+    /// Extensions that look for shortcuts, for every step of the better plan.
+    pub shortcuts_per_step: usize,
+}
+
+impl Default for ImproveOptions {
+    fn default() -> Self {
+        Self { draws_per_step: 3, draws_per_iteration: 0.5, shortcuts_per_step: 1 }
+    }
+}
+
+impl ImproveOptions {
+    fn draws(&self, steps: usize, iterations: u64) -> usize {
+        let more = (self.draws_per_iteration * iterations as f64).max(0.0);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and saturates")]
+        self.draws_per_step.saturating_mul(steps).saturating_add(more as usize)
+    }
+}
+
+/// How plans are improved: in what cost, and with how much effort.
+pub struct Improvement<D: Domain> {
+    /// What carrying out costs.
+    pub cost: Box<dyn ExecutionCost<D>>,
+    /// The effort.
+    pub options: ImproveOptions,
+}
+
+impl<D: Domain> fmt::Debug for Improvement<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Improvement").field("options", &self.options).finish_non_exhaustive()
+    }
+}
+
+/// The cheapest plan to the goal that is found from `plans`, which begin at one state, end in the goal, and took so many
+/// `iterations`; every motion of it is judged, also if those of `plans` are not. Not verified. `None` if no plan is found whose motions are all free, or if
+/// nobody waits for one any more.
+///
+/// # Laws
+/// Pure but for `rng` and the interrupt. If the motions of the first plan are free, the result costs at most as much.
+pub fn improve<D: Domain>(
+    extender: &Extender<'_, D>,
+    improvement: &Improvement<D>,
+    plans: &[&Plan<D>],
+    iterations: u64,
+    rng: &mut dyn Rng,
+) -> Option<Plan<D>> {
+    let start = plans.first()?.start();
+    let Improvement { cost, options } = improvement;
+    // Stops are drawn by whole extensions; what they lead to is judged once it is wanted.
+    let whole = ExtendOptions { step_m: None, defer: true, ..*extender.options };
+    let extender = Extender { options: &whole, ..*extender };
+    let mut roadmap = Roadmap::new(extender, &**cost, start);
+    for plan in plans {
+        roadmap.add_chain(Some(START), start, plan.steps());
+    }
+    let steps = plans.iter().map(|plan| plan.steps().len()).min()?;
+    for draw in 0..options.draws(steps, iterations) {
+        if extender.interrupt.stop().is_some() {
+            break;
+        }
+        if draw % DRAWS_BETWEEN == 0 {
+            roadmap.suppose_cheapest(rng)?;
+        }
+        if !roadmap.draw(rng) {
+            break;
+        }
+    }
+    let chain = roadmap.free_cheapest(rng)?;
+    let plan = Plan::new(start.clone(), roadmap.steps(&chain)?);
+    let shortcuts = options.shortcuts_per_step * plan.steps().len();
+    Some(smooth(&extender, &**cost, &plan, shortcuts, rng).unwrap_or(plan))
+}

@@ -1,0 +1,205 @@
+//! The cheapest chain of a roadmap whose motions are all known to be free.
+//!
+//! Only what lies on the cheapest chain is judged, and what comes out may make another chain the cheapest. A straight way that
+//! is blocked is first supposed to have a way around; that is looked for when the chain is wanted.
+
+use rand::Rng;
+
+use super::roadmap::{Id, Roadmap, Verdict};
+use crate::budget::Stop;
+use crate::domain::Domain;
+use crate::partial::PartialState;
+use crate::plan::Step;
+use crate::settle::settled;
+use crate::shorten::joined;
+use crate::state::{ComponentId, ObjectId, State};
+
+/// What every degree of [care](crate::validity::Validity::most_care) is worth with which a motion could be free and is not,
+/// seconds.
+const CARE_S: f64 = 3.0;
+
+impl<D: Domain> Roadmap<'_, D> {
+    /// Finds the ways of the cheapest chain, and supposes that what is blocked on them finds a way around. `None` if there is
+    /// no chain, or nobody waits for one any more.
+    pub(super) fn suppose_cheapest(&mut self, rng: &mut dyn Rng) -> Option<()> {
+        self.judge_cheapest(false, rng).map(|_| ())
+    }
+
+    /// The cheapest chain of which every motion is free, as far as can be told. `None` as in
+    /// [`suppose_cheapest`](Self::suppose_cheapest).
+    pub(super) fn free_cheapest(&mut self, rng: &mut dyn Rng) -> Option<Vec<Id>> {
+        self.judge_cheapest(true, rng)
+    }
+
+    /// Every turn of the loop tells more of one way or manipulation, of which there are finitely many.
+    fn judge_cheapest(&mut self, all: bool, rng: &mut dyn Rng) -> Option<Vec<Id>> {
+        loop {
+            if self.extender.interrupt.stop() == Some(Stop::Cancelled) {
+                return None;
+            }
+            let chain = self.cheapest(false)?;
+            let pairs = chain.iter().copied().zip(chain.iter().copied().skip(1));
+            let is_open = |verdict: Verdict| verdict == Verdict::Open || (all && verdict == Verdict::Supposed);
+            let is_open_link = |(a, b): &(Id, Id)| self.link_of(*a, *b).is_some_and(|link| is_open(link.verdict));
+            let is_open_vertex = |id: &&Id| self.known.get(**id).is_some_and(|known| known.verdict == Verdict::Open);
+            // What needs no way around first: it may rule the chain out, and takes less time.
+            let open =
+                pairs.clone().find(|(a, b)| self.link_of(*a, *b).is_some_and(|link| link.verdict == Verdict::Open));
+            if let Some((a, b)) = open {
+                self.judge_link(a, b, rng);
+            } else if let Some(id) = chain.iter().find(is_open_vertex).filter(|_| all) {
+                self.judge_manipulation(*id);
+            } else if let Some((a, b)) = pairs.clone().find(is_open_link) {
+                self.go_around(a, b, rng);
+            } else {
+                return Some(chain);
+            }
+        }
+    }
+
+    fn judge_manipulation(&mut self, id: Id) {
+        let Some(known) = self.known.get(id) else { return };
+        let lost = self.care_lost(&known.entry, &known.steps);
+        let Some(known) = self.known.get_mut(id) else { return };
+        match lost {
+            Some(lost) => {
+                known.seconds += CARE_S * lost as f64;
+                known.verdict = Verdict::Free;
+            }
+            None => known.verdict = Verdict::Blocked,
+        }
+    }
+
+    /// How much less care than there can be the steps are free with; `None` if they are not free at all.
+    fn care_lost(&self, here: &State<D>, steps: &[Step<D>]) -> Option<usize> {
+        let (m, validity) = (self.m(), self.extender.problem.validity());
+        let most = validity.most_care();
+        let mut here = here.clone();
+        let mut kept = most;
+        for step in steps {
+            let is_free = |care: &usize| {
+                let free = validity.free_prefix_with(*care, m, &step.instance, &here);
+                free.blame.is_none() || free.fraction >= step.until
+            };
+            kept = (0..=kept).rev().find(is_free)?;
+            step.instance.motion.at_into(m, step.until, &mut here);
+        }
+        Some(most - kept)
+    }
+
+    fn may_turn(&self, step: &Step<D>) -> bool {
+        self.extender.reroute.is_some_and(|reroute| reroute.is_free_to_turn(&step.instance))
+    }
+
+    /// Finds the way of a link that is guessed, and judges one that is known.
+    fn judge_link(&mut self, a: Id, b: Id, rng: &mut dyn Rng) {
+        let Some(exit) = self.known.get(a).map(|known| known.exit.clone()) else { return };
+        let Some(link) = self.link_of(a, b) else { return };
+        let Some(steps) = link.steps.clone() else {
+            match self.way(a, b, rng) {
+                Some(steps) => self.link(a, b, steps),
+                None => self.rule(a, b, Verdict::Blocked),
+            }
+            return;
+        };
+        let (m, validity) = (self.m(), self.extender.problem.validity());
+        let mut here = exit;
+        let (mut expected_s, mut verdict) = (0.0, Verdict::Free);
+        let mut blocked = Vec::with_capacity(steps.len());
+        for step in &steps {
+            let turns = self.may_turn(step);
+            let straight_s = self.cost.seconds(m, &step.instance, &here, step.until);
+            let care = if turns { validity.most_care() } else { 0 };
+            let free = validity.free_prefix_with(care, m, &step.instance, &here);
+            let is_blocked = free.blame.is_some() && free.fraction < step.until;
+            blocked.push(is_blocked);
+            if !is_blocked {
+                expected_s += straight_s;
+                self.any.learn(straight_s, straight_s);
+            } else if turns {
+                expected_s += straight_s * self.around.ratio();
+                verdict = Verdict::Supposed;
+            } else {
+                return self.rule(a, b, Verdict::Blocked);
+            }
+            step.instance.motion.at_into(m, step.until, &mut here);
+        }
+        if let Some(link) = self.link_mut(a, b) {
+            (link.seconds, link.blocked, link.verdict) = (expected_s, blocked, verdict);
+        }
+    }
+
+    fn rule(&mut self, a: Id, b: Id, verdict: Verdict) {
+        if let Some(link) = self.link_mut(a, b) {
+            link.verdict = verdict;
+        }
+    }
+
+    /// Looks for ways around what is blocked.
+    fn go_around(&mut self, a: Id, b: Id, rng: &mut dyn Rng) {
+        let Some(exit) = self.known.get(a).map(|known| known.exit.clone()) else { return };
+        let Some(link) = self.link_of(a, b) else { return };
+        let (steps, blocked) = (link.steps.clone().unwrap_or_default(), link.blocked.clone());
+        match self.around(exit, steps, &blocked, rng) {
+            Some((seconds, steps)) => {
+                if let Some(link) = self.link_mut(a, b) {
+                    (link.seconds, link.steps, link.verdict) = (seconds, Some(steps), Verdict::Free);
+                }
+            }
+            None => self.rule(a, b, Verdict::Blocked),
+        }
+    }
+
+    /// The steps with ways around what is blocked, and what they cost.
+    fn around(
+        &mut self,
+        mut here: State<D>,
+        mut steps: Vec<Step<D>>,
+        blocked: &[bool],
+        rng: &mut dyn Rng,
+    ) -> Option<(f64, Vec<Step<D>>)> {
+        let m = self.m();
+        let mut seconds = 0.0;
+        for (step, is_blocked) in steps.iter_mut().zip(blocked) {
+            let straight_s = self.cost.seconds(m, &step.instance, &here, step.until);
+            let mut takes_s = straight_s;
+            if *is_blocked {
+                let (around, lost) = settled(&self.extender, &here, step.clone(), rng).ok()?;
+                *step = around;
+                takes_s = self.cost.seconds(m, &step.instance, &here, step.until);
+                self.around.learn(straight_s, takes_s);
+                self.any.learn(straight_s, takes_s);
+                takes_s += CARE_S * lost as f64;
+            }
+            seconds += takes_s;
+            step.instance.motion.at_into(m, step.until, &mut here);
+        }
+        Some((seconds, steps))
+    }
+
+    /// A way from the exit of `a` to the entry of `b`.
+    fn way(&self, a: Id, b: Id, rng: &mut dyn Rng) -> Option<Vec<Step<D>>> {
+        let (a, b) = (self.known.get(a)?, self.known.get(b)?);
+        if self.is_there(&a.exit, &b.entry) {
+            return Some(Vec::new());
+        }
+        let reached = self.extender.extend(&a.exit, &self.target(&b.entry), rng).reached;
+        let is_there = reached.last().is_some_and(|last| self.is_there(&last.state, &b.entry));
+        is_there.then(|| joined(reached))
+    }
+
+    /// May what begins at `entry` go on from `end`?
+    fn is_there(&self, end: &State<D>, entry: &State<D>) -> bool {
+        end.robot == entry.robot && end.objects == entry.objects && self.m().may_go_on(&end.mode, &entry.mode)
+    }
+
+    /// The robot as in `like`, and all that is not carried where it is there.
+    fn target(&self, like: &State<D>) -> PartialState<D> {
+        let m = self.m();
+        let carried = m.carried(&like.mode);
+        let named = like.objects.iter().enumerate().map(|(i, at)| (ObjectId::new(i), at));
+        let named = named.filter(|(id, _)| !carried.contains(ComponentId::Object(*id)));
+        let target = PartialState::anywhere(m).with_robot(m, like.robot.clone());
+        named.fold(target, |target, (id, at)| target.with_object(id, at.clone()))
+    }
+}

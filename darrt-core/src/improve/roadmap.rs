@@ -1,0 +1,318 @@
+//! The manipulations that are known, and the ways between them.
+//!
+//! A vertex is a manipulation: where the robot begins it, and where it stands afterwards. Two are linked where the second
+//! begins on the leaf on which the first ends; what the way between them costs is guessed until somebody wants to take it,
+//! and only the cheapest chain is judged.
+//!
+//! # Source
+//! Dellin and Srinivasa, A unifying formalism for shortest path problems with expensive edge evaluations via lazy best-first
+//! search over paths with edge selectors (`LazySP`), ICAPS 2016.
+
+use std::cmp::Ordering;
+use std::collections::{BTreeMap, BinaryHeap};
+
+use crate::cost::ExecutionCost;
+use crate::domain::Domain;
+use crate::extend::Extender;
+use crate::plan::Step;
+use crate::state::State;
+
+use super::pieces::{is_one_leaf, pieces, states};
+
+/// How many times as long as they seem ways are taken to be before any has been looked at.
+const PRIOR_RATIO: f64 = 2.0;
+/// How many times as long a way around takes as the straight one that is blocked.
+const PRIOR_AROUND: f64 = 2.5;
+/// As if so many seconds had been seen to take so many times as long.
+const PRIOR_S: f64 = 20.0;
+
+/// What is known of whether something is free.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// Nothing.
+    Open,
+    /// Where it is blocked it may turn aside.
+    Supposed,
+    /// Every motion is free.
+    Free,
+    /// Some motion is blocked and may not turn aside, or finds no way around.
+    Blocked,
+}
+
+/// Index of a vertex.
+pub(super) type Id = usize;
+
+/// The vertex at which every chain begins: the start.
+pub(super) const START: Id = 0;
+
+/// Approach and change of leaf; without steps: the start, or an arrival in the goal.
+pub(super) struct Manipulation<D: Domain> {
+    pub(super) entry: State<D>,
+    pub(super) steps: Vec<Step<D>>,
+    pub(super) exit: State<D>,
+    pub(super) seconds: f64,
+    pub(super) verdict: Verdict,
+    pub(super) is_arrival: bool,
+    links: Vec<Link<D>>,
+    begins_on: usize,
+    ends_on: usize,
+}
+
+/// The way from the exit of one manipulation to the entry of another.
+pub(super) struct Link<D: Domain> {
+    pub(super) to: Id,
+    pub(super) seconds: f64,
+    pub(super) verdict: Verdict,
+    /// `None`: it is guessed that there is one.
+    pub(super) steps: Option<Vec<Step<D>>>,
+    /// By step: is it blocked?
+    pub(super) blocked: Vec<bool>,
+}
+
+/// How much more something takes than it seems, as far as has been seen.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Experience {
+    seems_s: f64,
+    takes_s: f64,
+}
+
+impl Experience {
+    fn prior(ratio: f64) -> Self {
+        Self { seems_s: PRIOR_S, takes_s: ratio * PRIOR_S }
+    }
+
+    pub(super) fn learn(&mut self, seems_s: f64, takes_s: f64) {
+        self.seems_s += seems_s;
+        self.takes_s += takes_s;
+    }
+
+    pub(super) fn ratio(&self) -> f64 {
+        self.takes_s / self.seems_s
+    }
+}
+
+/// An entry of the queue of [`Roadmap::costs`]: the cheapest is the greatest, of equal ones that of the lowest index.
+struct Reached {
+    seconds: f64,
+    id: Id,
+}
+
+impl Ord for Reached {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.seconds.total_cmp(&self.seconds).then(other.id.cmp(&self.id))
+    }
+}
+
+impl PartialOrd for Reached {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Reached {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Reached {}
+
+/// Manipulations and links; see the module.
+pub(super) struct Roadmap<'a, D: Domain> {
+    pub(super) extender: Extender<'a, D>,
+    pub(super) cost: &'a dyn ExecutionCost<D>,
+    pub(super) known: Vec<Manipulation<D>>,
+    /// By leaf: a state of it.
+    leaves: Vec<State<D>>,
+    /// How often it has been tried to get from a leaf to another one, or to the goal.
+    pub(super) tries: BTreeMap<(usize, Option<usize>), u32>,
+    /// Of straight ways that are blocked.
+    pub(super) around: Experience,
+    /// Of all ways.
+    pub(super) any: Experience,
+}
+
+impl<D: Domain> Manipulation<D> {
+    /// The leaf on which it begins, and that on which it ends.
+    pub(super) fn leaves(&self) -> [usize; 2] {
+        [self.begins_on, self.ends_on]
+    }
+}
+
+impl<'a, D: Domain> Roadmap<'a, D> {
+    /// Only the start.
+    pub(super) fn new(extender: Extender<'a, D>, cost: &'a dyn ExecutionCost<D>, start: &State<D>) -> Self {
+        let (around, any) = (Experience::prior(PRIOR_AROUND), Experience::prior(PRIOR_RATIO));
+        let (known, leaves, tries) = (Vec::new(), Vec::new(), BTreeMap::new());
+        let mut roadmap = Self { extender, cost, known, leaves, tries, around, any };
+        let id = roadmap.add(start.clone(), Vec::new(), start.clone());
+        if let Some(begin) = roadmap.known.get_mut(id) {
+            begin.verdict = Verdict::Free;
+        }
+        roadmap
+    }
+
+    pub(super) fn m(&self) -> &'a D {
+        self.extender.problem.domain()
+    }
+
+    pub(super) fn is_goal(&self, state: &State<D>) -> bool {
+        self.extender.problem.goal().is_satisfied(self.m(), state)
+    }
+
+    /// Takes in the manipulations of a chain that begins at `here`, the exit of `from` if it is one, up to the goal if it
+    /// gets there.
+    pub(super) fn add_chain(&mut self, from: Option<Id>, here: &State<D>, steps: &[Step<D>]) {
+        let m = self.m();
+        let mut states = states(m, here, steps);
+        let goal = states.iter().position(|state| self.is_goal(state));
+        let steps = goal.map_or(steps, |end| steps.get(..end).unwrap_or(steps));
+        states.truncate(steps.len() + 1);
+        let (mut at, mut begun) = (from, 0);
+        for piece in pieces(m, steps, &states) {
+            let (Some(entry), Some(exit)) = (states.get(piece.entry), states.get(piece.until)) else { break };
+            let part = |from, to| steps.get(from..to).unwrap_or_default().to_vec();
+            let lead = part(piece.from, piece.entry);
+            let id = self.add(entry.clone(), part(piece.entry, piece.until), exit.clone());
+            if let Some(at) = at {
+                self.link(at, id, lead);
+            }
+            (at, begun) = (Some(id), piece.until);
+        }
+        if let Some(end) = goal.and_then(|_| states.last()) {
+            let lead = steps.get(begun..).unwrap_or_default().to_vec();
+            let id = self.add(end.clone(), Vec::new(), end.clone());
+            if let Some(arrival) = self.known.get_mut(id) {
+                (arrival.is_arrival, arrival.verdict) = (true, Verdict::Free);
+            }
+            if let Some(at) = at {
+                self.link(at, id, lead);
+            }
+        }
+    }
+
+    /// Seconds of a chain of steps.
+    pub(super) fn seconds(&self, here: &State<D>, steps: &[Step<D>]) -> f64 {
+        let m = self.m();
+        let mut here = here.clone();
+        let mut seconds = 0.0;
+        for step in steps {
+            seconds += self.cost.seconds(m, &step.instance, &here, step.until);
+            step.instance.motion.at_into(m, step.until, &mut here);
+        }
+        seconds
+    }
+
+    fn leaf_of(&mut self, state: &State<D>) -> usize {
+        let m = self.m();
+        let known = self.leaves.iter().position(|leaf| is_one_leaf(m, leaf, state));
+        known.unwrap_or_else(|| {
+            self.leaves.push(state.clone());
+            self.leaves.len() - 1
+        })
+    }
+
+    /// A new vertex, with guessed links from and to those on its leaves.
+    fn add(&mut self, entry: State<D>, steps: Vec<Step<D>>, exit: State<D>) -> Id {
+        let (begins_on, ends_on) = (self.leaf_of(&entry), self.leaf_of(&exit));
+        let id = self.known.len();
+        let guess = |to: Id, from: &State<D>, at: &State<D>| {
+            let seconds = self.any.ratio() * self.cost.between(self.extender.problem.domain(), from, at);
+            Link { to, seconds, verdict: Verdict::Open, steps: None, blocked: Vec::new() }
+        };
+        let behind = self.known.iter().enumerate().skip(1).filter(|(_, next)| next.begins_on == ends_on);
+        let links = behind.map(|(to, next)| guess(to, &exit, &next.entry)).collect();
+        let before = self.known.iter().enumerate().filter(|(_, last)| last.ends_on == begins_on && !last.is_arrival);
+        let to_it: Vec<_> = before.map(|(at, last)| (at, guess(id, &last.exit, &entry))).collect();
+        for (at, link) in to_it {
+            if let Some(last) = self.known.get_mut(at) {
+                last.links.push(link);
+            }
+        }
+        let seconds = self.seconds(&entry, &steps);
+        let (verdict, is_arrival) = (Verdict::Open, false);
+        self.known.push(Manipulation { entry, steps, exit, seconds, verdict, is_arrival, links, begins_on, ends_on });
+        id
+    }
+
+    /// The link from `a` to `b` goes by `steps`.
+    pub(super) fn link(&mut self, a: Id, b: Id, steps: Vec<Step<D>>) {
+        let Some(exit) = self.known.get(a).map(|a| &a.exit) else { return };
+        let seconds = self.seconds(exit, &steps);
+        if let Some(link) = self.link_mut(a, b) {
+            (link.seconds, link.steps) = (seconds, Some(steps));
+        }
+    }
+
+    pub(super) fn link_of(&self, a: Id, b: Id) -> Option<&Link<D>> {
+        self.known.get(a)?.links.iter().find(|link| link.to == b)
+    }
+
+    pub(super) fn link_mut(&mut self, a: Id, b: Id) -> Option<&mut Link<D>> {
+        self.known.get_mut(a)?.links.iter_mut().find(|link| link.to == b)
+    }
+
+    /// By vertex: the seconds until its exit on the cheapest chain from the start over what is not blocked, or `certain`: over
+    /// what is free; and the vertex before it. Infinite where there is none.
+    pub(super) fn costs(&self, certain: bool) -> Vec<(f64, Id)> {
+        let may = |verdict: Verdict| verdict == Verdict::Free || (!certain && verdict != Verdict::Blocked);
+        let mut best = vec![(f64::INFINITY, START); self.known.len()];
+        if let Some(start) = best.first_mut() {
+            start.0 = 0.0;
+        }
+        let mut open = BinaryHeap::from([Reached { seconds: 0.0, id: START }]);
+        while let Some(Reached { seconds, id }) = open.pop() {
+            if best.get(id).is_none_or(|known| known.0 < seconds) {
+                continue;
+            }
+            let Some(here) = self.known.get(id) else { continue };
+            for link in here.links.iter().filter(|link| may(link.verdict)) {
+                let Some(next) = self.known.get(link.to).filter(|next| may(next.verdict)) else { continue };
+                let through = seconds + link.seconds + next.seconds;
+                if let Some(slot) = best.get_mut(link.to)
+                    && through < slot.0
+                {
+                    *slot = (through, id);
+                    open.push(Reached { seconds: through, id: link.to });
+                }
+            }
+        }
+        best
+    }
+
+    /// The arrival with the cheapest chain.
+    pub(super) fn best_arrival(&self, costs: &[(f64, Id)]) -> Option<Id> {
+        let arrivals = self.known.iter().enumerate().filter(|(_, known)| known.is_arrival);
+        let timed =
+            arrivals.filter_map(|(id, _)| Some((id, costs.get(id)?.0))).filter(|(_, seconds)| seconds.is_finite());
+        timed.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0))).map(|(id, _)| id)
+    }
+
+    /// The cheapest chain from the start to an arrival; see [`Roadmap::costs`].
+    pub(super) fn cheapest(&self, certain: bool) -> Option<Vec<Id>> {
+        let costs = self.costs(certain);
+        chain_to(&costs, self.best_arrival(&costs)?)
+    }
+
+    /// What a chain of vertices does, as far as its ways are known.
+    pub(super) fn steps(&self, chain: &[Id]) -> Option<Vec<Step<D>>> {
+        let mut steps = Vec::new();
+        for (a, b) in chain.iter().zip(chain.iter().skip(1)) {
+            steps.extend(self.link_of(*a, *b)?.steps.as_ref()?.iter().cloned());
+            steps.extend(self.known.get(*b)?.steps.iter().cloned());
+        }
+        Some(steps)
+    }
+}
+
+/// The chain from the start to `last`, by what [`Roadmap::costs`] says.
+fn chain_to(costs: &[(f64, Id)], last: Id) -> Option<Vec<Id>> {
+    let mut chain = vec![last];
+    let mut at = last;
+    while at != START {
+        at = costs.get(at)?.1;
+        chain.push(at);
+    }
+    chain.reverse();
+    Some(chain)
+}

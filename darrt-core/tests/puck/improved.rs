@@ -1,0 +1,121 @@
+//! A plan that was found takes less time, and stays a plan.
+
+use darrt_core::budget::{Interrupt, Stop};
+use darrt_core::cost::{TravelCost, plan_seconds};
+use darrt_core::extend::{ExtendOptions, Extender};
+use darrt_core::improve::{ImproveOptions, Improvement, improve};
+use darrt_core::laws::check_planner;
+use darrt_core::observe::Silent;
+use darrt_core::partial::PartialState;
+use darrt_core::plan::{Plan, Step};
+use darrt_core::problem::Problem;
+use darrt_core::search::Strategy;
+use darrt_core::solve::solve;
+use darrt_core::testing::puck::{Setup, paper_strategy, problems};
+use darrt_core::testing::strategies::{config, seeds};
+use proptest::prelude::*;
+
+use super::support::{World, id, options, rng};
+
+const EXTEND: ExtendOptions = ExtendOptions { spacing_m: 0.1, max_depth: 20, defer: false, step_m: None };
+
+fn improvement(draws_per_step: usize, shortcuts_per_step: usize) -> Improvement<World> {
+    let options = ImproveOptions { draws_per_step, draws_per_iteration: 0.5, shortcuts_per_step };
+    Improvement { cost: Box::new(TravelCost::default()), options }
+}
+
+fn extender(problem: &Problem<World>) -> Extender<'_, World> {
+    Extender { problem, options: &EXTEND, reroute: None, interrupt: Interrupt::NEVER }
+}
+
+fn seconds(problem: &Problem<World>, plan: &Plan<World>) -> f64 {
+    plan_seconds(&TravelCost::default(), problem.domain(), plan)
+}
+
+fn improved(problem: &Problem<World>, plan: &Plan<World>, with: &Improvement<World>, seed: u64) -> Plan<World> {
+    let improved = || improve(&extender(problem), with, &[plan], 20, &mut rng(seed)).unwrap();
+    let new = improved();
+    assert_eq!(format!("{:?}", improved()), format!("{new:?}"), "same numbers, same plan");
+    let m = problem.domain();
+    assert_eq!(problem.verifier().verify(m, problem.start(), problem.goal(), &new).err(), None);
+    new
+}
+
+#[test]
+fn found_plans_never_take_longer_and_mostly_less() {
+    let ready = [problems::two_pucks, problems::wall_with_gap, problems::graspable, problems::four_pucks]
+        .map(|make| make().unwrap());
+    let mut runner = proptest::test_runner::TestRunner::new(config(24, None));
+    let gains = std::cell::RefCell::new([0_u32; 2]);
+    let cases = (seeds(), 0..ready.len(), 0..6_usize, 0..4_usize);
+    runner
+        .run(&cases, |(seed, which, draws, shortcuts)| {
+            let problem = &ready[which];
+            let outcome = solve(problem, &paper_strategy().unwrap(), &options(seed, 5000), &mut Silent);
+            let plan = outcome.solution.unwrap().plan().clone();
+            let new = improved(problem, &plan, &improvement(draws, shortcuts), seed);
+            let (before, after) = (seconds(problem, &plan), seconds(problem, &new));
+            prop_assert!(after <= before + 1e-9, "{before} s before, {after} s after");
+            let mut gains = gains.borrow_mut();
+            gains[0] += 1;
+            gains[1] += u32::from(after < 0.95 * before);
+            Ok(())
+        })
+        .unwrap();
+    let [runs, less] = gains.into_inner();
+    assert!(2 * less > runs, "of {runs} plans {less} take less time");
+}
+
+/// Manipulations that lead nowhere are left out by draws alone.
+#[test]
+fn a_puck_that_nobody_asks_for_is_not_pushed() {
+    let floor = Setup::new([4.0, 3.0], 0.15).robot_at([0.5, 1.5]).puck("red", 0.12, [1.2, 1.5]);
+    let floor = floor.puck("blue", 0.12, [1.5, 0.5]).puck_goal(1, [3.0, 0.5]);
+    let problem = floor.problem().unwrap();
+    let m = problem.domain();
+    let puck = |index, at| PartialState::anywhere(m).with_object(id(index), at);
+    let (mut here, mut steps) = (problem.start().clone(), Vec::new());
+    for target in [puck(0, [2.0, 1.5]), puck(1, [2.0, 0.5]), puck(1, [3.0, 0.5])] {
+        let extension = extender(&problem).extend(&here, &target, &mut rng(0));
+        here = extension.reached.last().unwrap().state.clone();
+        for r in extension.reached {
+            match steps.last_mut().filter(|last: &&mut Step<_>| std::sync::Arc::ptr_eq(&last.instance, &r.instance)) {
+                Some(last) => last.until = r.t,
+                None => steps.push(Step { instance: r.instance, until: r.t, primitive: r.primitive }),
+            }
+        }
+    }
+    let plan = Plan::new(problem.start().clone(), steps);
+    assert!(problem.verifier().verify(m, problem.start(), problem.goal(), &plan).is_ok());
+    let new = improved(&problem, &plan, &improvement(4, 0), 1);
+    let labels: Vec<_> = new.steps().iter().map(|step| step.instance.label).collect();
+    assert_eq!(labels, ["Transit", "Push"]);
+}
+
+#[test]
+fn no_plan_when_nobody_waits() {
+    let problem = problems::two_pucks().unwrap();
+    let plan = solve(&problem, &paper_strategy().unwrap(), &options(0, 5000), &mut Silent).solution.unwrap();
+    let try_it = |stop| {
+        let ask = move || stop;
+        let extender = Extender { interrupt: Interrupt::new(&ask), ..extender(&problem) };
+        improve(&extender, &improvement(4, 4), &[plan.plan()], 9, &mut rng(0))
+    };
+    assert!(try_it(Some(Stop::Cancelled)).is_none());
+    // When time is up what is known is still judged.
+    assert!(try_it(Some(Stop::TimeLimit)).is_some() && try_it(None).is_some());
+    assert!(improve(&extender(&problem), &improvement(4, 4), &[], 9, &mut rng(0)).is_none());
+}
+
+/// The laws of planners, on several threads too.
+#[test]
+fn a_planner_that_improves_is_a_planner() {
+    for defer in [false, true] {
+        let paper = paper_strategy().unwrap();
+        let strategy =
+            Strategy { extend: ExtendOptions { defer, ..EXTEND }, improve: Some(improvement(4, 2)), ..paper };
+        for problem in [problems::wall_with_gap().unwrap(), problems::graspable().unwrap()] {
+            check_planner(&problem, &strategy, &options(2, 60)).unwrap();
+        }
+    }
+}
