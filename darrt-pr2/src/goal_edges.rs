@@ -100,7 +100,7 @@ mod tests {
         let geometry = problem.geometry().unwrap();
         let surface = geometry.scene.surfaces().iter().find(|s| s.name() == "side table").unwrap();
         let (low, high) = surface.bounds();
-        [high.x, (low.y + high.y) / 2.0]
+        [high.x, f64::midpoint(low.y, high.y)]
     }
 
     #[test]

@@ -1,4 +1,5 @@
 //! Every everyday problem is planned once, and the plan is what a person would expect of it.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test says what is wrong by panicking")]
 
 use darrt_core::budget::Cancel;
 use darrt_core::observe::Silent;

@@ -113,7 +113,7 @@ impl ObjectSpace {
         let spare_m = (edge.distance - self.edge_margin_m).max(0.0);
         let inside_m = match place {
             Place::SupportEdge => self.edge_margin_m + spare_m * rng.random_range(0.0..EDGE_SHARE),
-            _ => self.edge_margin_m + spare_m,
+            Place::OnSupport => self.edge_margin_m + spare_m,
         };
         if inside_m != edge.distance {
             at = edge.point - inside_m * edge.outward.into_inner();

@@ -147,6 +147,7 @@ pub struct PlanOptions {
 
 /// Options of `darrt check`.
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of the command line")]
 pub struct CheckOptions {
     /// The plan file
     pub plan: PathBuf,

@@ -72,7 +72,7 @@ impl<'a> World<'a> {
             (0..scene.surfaces().len()).map(|surface| flush.group(surface, &movable.surfaces)).collect()
         };
         let groups = movables.iter().map(of_object).collect();
-        Ok(Self { carriers, fixed, movables, scene, flush, groups })
+        Ok(Self { fixed, movables, scene, carriers, flush, groups })
     }
 
     /// Index of the movable object called `name`.

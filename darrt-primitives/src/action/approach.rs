@@ -74,7 +74,7 @@ fn ends<M: Manipulator>(m: &Tabletop<M>, pushable: &Pushable<'_>, target: &Point
     if settings.edge_rule == EdgeRule::LineCrossing || is_inside {
         return between(m, pushable, *target, *target);
     }
-    let [least, most] = pushable.edge_distances_m(m);
+    let [least, most] = Pushable::edge_distances_m(m);
     let edge = surface.nearest_edge_point(target);
     let [nearest, farthest] = [least, most].map(|inside| edge.point - inside * edge.outward.into_inner());
     // Where the farthest end is far enough from every other edge, the nearer ones are as well.

@@ -128,13 +128,12 @@ impl<M: Manipulator> Attempt<'_, M> {
                     continue;
                 }
             };
-            let retreated = match chain.take() {
-                Some(chain) => chain,
-                None => {
-                    let mut chain = Chain::at(from);
-                    retreat(m, &mut chain, m.settings().retreat_m)?;
-                    chain
-                }
+            let retreated = if let Some(chain) = chain.take() {
+                chain
+            } else {
+                let mut chain = Chain::at(from);
+                retreat(m, &mut chain, m.settings().retreat_m)?;
+                chain
             };
             let wanted = Wanted { world_from_tool: &place.at_contact, tries: m.settings().base_tries };
             let push = Pushing { pushable, place: &place, course };

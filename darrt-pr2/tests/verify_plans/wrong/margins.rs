@@ -21,7 +21,7 @@ fn with_saucer(at: [f64; 2]) -> PlanFile {
     let mut plan = plans::push();
     plan.problem.obstacles.retain(|obstacle| obstacle.name != "big bowl");
     let mut saucer = plan.problem.objects[0].clone();
-    saucer.name = "saucer".to_owned();
+    "saucer".clone_into(&mut saucer.name);
     saucer.at = at;
     plan.problem.objects.push(saucer);
     let pose = Pose { position: [at[0], at[1], 0.76], quaternion: [0.0, 0.0, 0.0, 1.0] };

@@ -46,7 +46,7 @@ pub(super) fn end_of_push<M: Manipulator>(
     rng: &mut dyn Rng,
 ) -> Result<Point2<f64>, Infeasible> {
     let settings = &m.settings().push;
-    let [least, most] = pushable.edge_distances_m(m);
+    let [least, most] = Pushable::edge_distances_m(m);
     let edge_distance = if least < most { rng.random_range(least..=most) } else { least };
     let target = Point2::new(target.translation.x, target.translation.y);
     let target_margin = m.edge_margin_m(pushable.object, pushable.on, &target);

@@ -77,7 +77,7 @@ impl<'a> Pushable<'a> {
     }
 
     /// How far inside an edge it may stop that a push goes to, least and most, metres.
-    pub(in crate::action) fn edge_distances_m<M: Manipulator>(&self, m: &Tabletop<M>) -> [f64; 2] {
+    pub(in crate::action) fn edge_distances_m<M: Manipulator>(m: &Tabletop<M>) -> [f64; 2] {
         let settings = m.settings();
         settings.push.edge_distance_m.map(|distance| distance.max(settings.safety.edge_margin_m))
     }
