@@ -3,15 +3,18 @@
 //!
 //! | your type implements | call | the laws |
 //! |---|---|---|
-//! | [`ComponentSpace`](crate::space::ComponentSpace) | [`check_component_space`], [`check_covering`] | [`space`] |
+//! | [`ComponentSpace`](crate::space::ComponentSpace) | [`check_component_space`], [`check_space_covers`], [`check_covering`] | [`space`] |
 //! | [`Domain`](crate::domain::Domain) | [`check_domain`], [`check_partial`] | [`domain`], [`partial`] |
-//! | [`Distance`](crate::distance::Distance) | [`check_distance`], [`check_lower_bound`], [`check_nearest`] | [`distance`], [`nearest`] |
+//! | [`Distance`](crate::distance::Distance) | [`check_distance`], [`check_metric`], [`check_lower_bound`], [`check_nearest`] | [`distance`], [`nearest`] |
 //! | [`Motion`](crate::motion::Motion) | [`check_motion`], [`check_instance`] | [`motion`] |
 //! | [`Primitive`](crate::primitive::Primitive) | [`check_primitive`], [`try_primitive`], [`check_contacts`] | [`primitive`] |
-//! | [`Validity`](crate::validity::Validity) | [`check_validity`], [`check_against_oracle`], [`check_enlarged`] | [`validity`] |
+//! | [`Validity`](crate::validity::Validity) | [`check_validity`], [`check_by_oracle`], [`check_against_oracle`], [`check_enlarged`] | [`validity`] |
 //! | [`Goal`](crate::goal::Goal) | [`check_goal`] | [`goal`] |
 //! | [`Sampler`](crate::sample::Sampler) | [`check_sampler`], [`check_sampler_covers`] | [`sampler`] |
+//! | [`Verifier`](crate::verify::Verifier) | [`check_verifier`] | [`verifier`] |
 //! | all of them together | [`check_planner`], [`check_accounts`], [`check_cancel`] | [`planner`] |
+//! | whatever you brought | [`check_everything`], [`check_thoroughly`] | all |
+//! | every call | | [`watch`] |
 //!
 //! Each function takes concrete inputs and returns the first law that is broken. Call them from a property
 //! test (the inputs then shrink), a fuzz target, a doctest or a debug assertion; the feature `testing`

@@ -124,6 +124,7 @@ fn a_hang_is_reported_and_names_the_call() {
     let broken = found.broken().next().unwrap();
     assert_eq!(broken.name(), "call.returns", "{found}");
     assert!(broken.left.contains("useful has not come back"), "{found}");
+    assert!(broken.replay.contains("useful of Hangs, from &State"), "{found}");
 }
 
 /// Never of use, or never successful.

@@ -4,9 +4,10 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test says no more than that it failed")]
 
 use darrt_core::laws::{PrimitiveClaims, Tried, check_primitive, try_primitive};
+use darrt_core::laws::{Report, Subjects, check_everything};
 use darrt_core::partial::PartialState;
 use darrt_core::state::{ObjectId, State};
-use darrt_core::testing::puck::{Clearance, Mode, Puck, PuckWorld};
+use darrt_core::testing::puck::{Clearance, Mode, Puck, PuckWorld, paper_strategy, problems};
 use darrt_core::testing::strategies::{config, tasks_from, valid_states};
 use proptest::prelude::*;
 
@@ -22,6 +23,16 @@ use nudge::Nudge;
 // The ten lines of the guide.
 include!("guide/law.rs");
 
+/// The user's oracle of the guide: here one that knows no obstacles but the puck.
+fn free(m: &PuckWorld, state: &State<PuckWorld>) -> bool {
+    use darrt_core::domain::Domain;
+    use darrt_core::space::ComponentSpace;
+    m.robot().contains(&state.robot) && m.gap(state, ObjectId::new(0)) >= 0.0
+}
+
+// The ten lines that check everything.
+include!("guide/everything.rs");
+
 const GUIDE: &str = include_str!("../docs/is-my-primitive-right.md");
 
 /// The task of the guide: a puck that is a sixteenth of a metre from its target.
@@ -35,7 +46,7 @@ fn task() -> (PuckWorld, State<PuckWorld>, PartialState<PuckWorld>) {
 
 #[test]
 fn the_guide_shows_the_code_that_is_tested() {
-    for shown in [include_str!("guide/nudge.rs"), include_str!("guide/law.rs")] {
+    for shown in [include_str!("guide/nudge.rs"), include_str!("guide/law.rs"), include_str!("guide/everything.rs")] {
         assert!(GUIDE.contains(&format!("```rust\n{shown}```")), "the guide does not show:\n{shown}");
         assert!(shown.lines().count() <= 60);
     }

@@ -32,6 +32,8 @@ use crate::stopwatch::{Stopwatch, Timed, Times, Watched};
 use crate::verify::{Proof, VerifyOptions, verify_unless};
 use crate::world::{self, Built, World, WorldState};
 
+mod course;
+
 /// Bound on the travel of any point of the robot between two nodes of the tree, metres; the hand moves about a third.
 const NODE_SPACING: f64 = 1.0;
 /// Extensions that are spent on a shorter plan.
@@ -135,7 +137,8 @@ pub struct PlanResult {
     pub last_refusal: Option<String>,
 }
 
-/// The judge: a plan is exported and the plan file is verified, so that what is accepted is what the user gets.
+/// The judge: a plan is exported and the plan file is verified, so that what is accepted is what the user gets. What a file
+/// cannot show is looked at before.
 #[derive(Debug)]
 struct FileVerifier {
     exporter: Arc<Exporter>,
@@ -151,7 +154,14 @@ struct Judged {
 }
 
 impl Verifier<World> for FileVerifier {
-    fn verify(&self, m: &World, _: &WorldState, _: &dyn Goal<World>, plan: &Plan<World>) -> Result<Verified, Refusal> {
+    fn verify(
+        &self,
+        m: &World,
+        start: &WorldState,
+        goal: &dyn Goal<World>,
+        plan: &Plan<World>,
+    ) -> Result<Verified, Refusal> {
+        course::check(m, start, goal, plan)?;
         let file = self.exporter.export(m, plan, 0, PlannerFacts::default());
         let verdict = self.watch.verification(|| verify_unless(&file, &VerifyOptions::default(), &self.cancel));
         let proof = verdict.map_err(|refusal| Refusal { step: None, at: 0.0, reason: refusal.to_string() })?;

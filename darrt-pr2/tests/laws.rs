@@ -6,6 +6,8 @@
 
 #[path = "laws/carried.rs"]
 mod carried;
+#[path = "laws/everything.rs"]
+mod everything;
 #[path = "laws/primitives.rs"]
 mod primitives;
 #[path = "laws/robot.rs"]

@@ -3,6 +3,7 @@
 //! | you have | call | the laws |
 //! |---|---|---|
 //! | a [`Manipulator`](crate::manipulator::Manipulator) | [`check_manipulator`], [`check_reaches`] | [`manipulator`] |
+//! | a [`GraspFamily`](crate::grasp::GraspFamily) | [`check_grasps`] | [`grasp`] |
 //! | a Jacobian | [`check_jacobian`], [`check_chain`] | [`jacobian`] |
 //! | instances on a [`Tabletop`](crate::tabletop::Tabletop) | [`check_tabletop`], [`check_tabletop_instance`], [`check_finger_contacts`] | [`tabletop`] |
 //!
@@ -30,17 +31,19 @@
 //! # }
 //! ```
 
+pub mod grasp;
 pub mod jacobian;
 pub mod manipulator;
 pub mod tabletop;
 
+pub use grasp::check_grasps;
 pub use jacobian::{check_chain, check_jacobian};
 pub use manipulator::{ManipulatorClaims, ReachClaims, check_manipulator, check_reaches};
 pub use tabletop::{TabletopClaims, body_travel, check_finger_contacts, check_tabletop, check_tabletop_instance};
 
 /// Every law of this crate.
 pub fn all() -> impl Iterator<Item = &'static str> {
-    [manipulator::LAWS, jacobian::LAWS, tabletop::LAWS].into_iter().flatten().copied()
+    [manipulator::LAWS, jacobian::LAWS, tabletop::LAWS, grasp::LAWS].into_iter().flatten().copied()
 }
 
 #[cfg(test)]

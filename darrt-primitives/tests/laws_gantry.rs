@@ -17,8 +17,8 @@ use darrt_primitives::action::{Chain, pick::pick, place::place, push::push, retr
 use darrt_primitives::arm_space::ArmSpace;
 use darrt_primitives::kinematics::{Chain as JointChain, KinematicTree, RobotDescription};
 use darrt_primitives::laws::{
-    ManipulatorClaims, ReachClaims, TabletopClaims, body_travel, check_chain, check_manipulator, check_reaches,
-    check_tabletop,
+    ManipulatorClaims, ReachClaims, TabletopClaims, body_travel, check_chain, check_grasps, check_manipulator,
+    check_reaches, check_tabletop,
 };
 use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::testing::gantry::{Gantry, Joints};
@@ -75,6 +75,16 @@ fn the_spaces_and_the_domain_keep_their_laws() {
         check_component_space(m.robot(), &claims, [&a.robot, &b.robot, &c.robot], [t, u], seed)?;
         check_domain(&m, &claims, [&a, &b, &c], [t, u], seed)?;
     });
+}
+
+#[test]
+fn the_grasps_at_the_table_keep_their_laws() {
+    let m = honest_table().unwrap();
+    for movable in m.movables() {
+        for (family, seed) in movable.grasps.iter().zip(0..) {
+            check_grasps(&**family, &movable.body, m.manipulator().hand(), seed).unwrap();
+        }
+    }
 }
 
 type Outcome = Result<Instances<Table>, Infeasible>;

@@ -92,6 +92,7 @@ pub(super) fn answers<D: Domain>(m: &D, a: &State<D>, b: &State<D>) -> Vec<(&'st
     say("objects", &|| format!("{:?}", m.objects().len()));
     say("working_point", &|| format!("{:?}", m.working_point(&a.robot)));
     say("component_name", &|| m.component_name(ComponentId::Robot).into_owned());
+    say("may_go_on", &|| format!("{:?}", [m.may_go_on(&a.mode, &b.mode), m.may_go_on(&b.mode, &a.mode)]));
     for (i, (p, q)) in a.objects.iter().zip(&b.objects).enumerate() {
         let id = ObjectId::new(i);
         say("component_name", &|| m.component_name(ComponentId::Object(id)).into_owned());

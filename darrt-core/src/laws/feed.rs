@@ -247,10 +247,40 @@ pub(super) fn moved<D: Domain>(m: &D, state: &State<D>, component: ComponentId, 
     at
 }
 
+/// Brings one component of `state` by a share of the way towards where it is in `there`.
+pub(super) fn drift<D: Domain>(m: &D, state: &mut State<D>, there: &State<D>, component: ComponentId, share: f64) {
+    match component {
+        ComponentId::Robot => state.robot = m.robot().interpolate(&state.robot, &there.robot, share),
+        ComponentId::Object(id) => {
+            if let (Some(space), Some(slot), Some(to)) =
+                (m.objects().get(id.index()), state.objects.get_mut(id.index()), there.object(id))
+            {
+                *slot = space.interpolate(slot, to, share);
+            }
+        }
+    }
+}
+
+/// `state` with one object in the place of another, if there are two that can be there.
+pub(super) fn piled<D: Domain>(m: &D, state: &State<D>, rng: &mut dyn Rng) -> Option<State<D>> {
+    let count = state.objects.len();
+    let (from, to) = (rng.random_range(0..count.max(1)), rng.random_range(0..count.max(1)));
+    let place = state.objects.get(from).filter(|_| from != to)?.clone();
+    let mut pile = state.clone();
+    let slot = pile.objects.get_mut(to).filter(|_| m.objects().get(to).is_some_and(|space| space.contains(&place)))?;
+    *slot = place;
+    Some(pile)
+}
+
+/// The robot and all objects.
+pub(super) fn everything<D: Domain>(m: &D) -> Vec<ComponentId> {
+    let objects = (0..m.objects().len()).map(|i| ComponentId::Object(ObjectId::new(i)));
+    std::iter::once(ComponentId::Robot).chain(objects).collect()
+}
+
 /// The components that `set` holds.
 pub(super) fn components<D: Domain>(m: &D, set: ComponentSet) -> Vec<ComponentId> {
-    let objects = (0..m.objects().len()).map(|i| ComponentId::Object(ObjectId::new(i)));
-    std::iter::once(ComponentId::Robot).chain(objects).filter(|component| set.contains(*component)).collect()
+    everything(m).into_iter().filter(|component| set.contains(*component)).collect()
 }
 
 #[cfg(test)]

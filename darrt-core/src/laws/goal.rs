@@ -22,8 +22,11 @@ pub const NAN: &str = "goal.nan: what the goal looks at is not NaN: no such stat
 /// It says no at times.
 pub const DISCERNS: &str = "goal.discerns: a goal is not satisfied by every state";
 
+/// What a sample names counts.
+pub const ASKS: &str = "goal.asks: what a sample names matters: not every other place of it satisfies the goal as well";
+
 /// The laws of this file.
-pub const LAWS: &[&str] = &[SAMPLED, FITS, PURE, NAN, DISCERNS];
+pub const LAWS: &[&str] = &[SAMPLED, FITS, PURE, NAN, DISCERNS, ASKS];
 
 /// How many samples are drawn: a fault in one of a thousand is then seen in the cases of one test.
 const DRAWS: u64 = 16;
@@ -81,6 +84,9 @@ impl<D: Domain> Trial<'_, D> {
         if !is_anything {
             self.discerns(first.as_ref(), &mut rng)?;
         }
+        if let Some(target) = first.as_ref().filter(|_| !satisfied) {
+            self.asks(target, &mut rng)?;
+        }
         equal(PURE, &self.is_satisfied(self.from), &satisfied)
     }
 
@@ -112,6 +118,21 @@ impl<D: Domain> Trial<'_, D> {
             };
             ensure(NAN, !is_read, || format!("satisfied by {:?}", bad.state), "not satisfied")
                 .map_err(|broken| broken.of(&bad.what).of(self.m.component_name(bad.component)))?;
+        }
+        Ok(())
+    }
+
+    /// One component that the sample names is anywhere, the others are where it wants them. What was satisfied without the
+    /// sample asks for something else.
+    fn asks(&self, target: &PartialState<D>, rng: &mut Stream) -> Result<(), Broken> {
+        let met = target.overlay(self.m, self.from);
+        for component in components(self.m, target.components()) {
+            let places: Vec<_> = (0..ANYWHERE).map(|_| moved(self.m, &met, component, rng)).collect();
+            let differs = places.iter().any(|place| !target.is_met(self.m, place));
+            let is_always = differs && places.iter().all(|place| self.is_satisfied(place));
+            let text = || format!("satisfied wherever it is, in {ANYWHERE} of {ANYWHERE} places");
+            ensure(ASKS, !is_always, text, "not satisfied in some")
+                .map_err(|broken| broken.of(self.m.component_name(component)))?;
         }
         Ok(())
     }

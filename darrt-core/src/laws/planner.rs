@@ -109,7 +109,16 @@ fn judge_way<D: Domain>(problem: &Problem<D>, way: Option<&Plan<D>>, seed: u64) 
 }
 
 /// Tells the watchdog of every event.
-struct Heart(Pulse);
+pub(super) struct Heart(Pulse);
+
+impl Heart {
+    /// Of the check that this thread makes.
+    pub(super) fn of_this_thread() -> Self {
+        let heart = Self(Pulse::of_this_thread());
+        heart.0.beat("an iteration of the search");
+        heart
+    }
+}
 
 impl Observer for Heart {
     fn on_event(&mut self, _: &Event<'_>) -> ControlFlow<()> {
@@ -119,9 +128,7 @@ impl Observer for Heart {
 }
 
 fn run<D: Domain>(problem: &Problem<D>, strategy: &Strategy<D>, options: &SolveOptions, threads: usize) -> Outcome<D> {
-    let mut heart = Heart(Pulse::of_this_thread());
-    heart.0.beat("an iteration of the search");
-    solve(problem, strategy, &timeless(options, threads), &mut heart)
+    solve(problem, strategy, &timeless(options, threads), &mut Heart::of_this_thread())
 }
 
 /// The same options without a clock, with a cancel token of their own.

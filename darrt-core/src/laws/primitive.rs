@@ -13,9 +13,10 @@ use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ObjectId, State};
 use crate::validity::{Blame, BlockKind, Validity};
 
-use super::feed::{cornered, rng_of, spoilt_states};
+use super::feed::{cornered, elsewhere, rng_of, spoilt_states};
 use super::motion::{MotionClaims, check_instance};
 use super::partial::with_other_unnamed;
+use super::validity::outside::{borders, exempts};
 use super::watch::{bounded, entering, guarded, watched};
 use super::{Broken, at_most, ensure, equal, measure};
 
@@ -394,10 +395,11 @@ fn head<D: Domain>(instance: &Instance<D>) -> impl PartialEq + std::fmt::Debug +
 
 /// An instance allows the contact with the object that it names: `validity` may find other reasons why
 /// the motion is not free, but not that robot and this object touch. Whether it is the robot that touches the object is not
-/// believed of the kind of the blame alone: it is also when the same place is free as soon as the robot is elsewhere.
+/// believed of the kind of the blame alone: it is also when the same place is free as soon as the robot is elsewhere. And it
+/// allows no more than that: among states anywhere only what it names, moves or has at hand is excused.
 ///
 /// # Errors
-/// [`CONTACTS`] with the blame.
+/// [`CONTACTS`] with the blame, or [`validity.exempts`](super::validity::EXEMPTS).
 pub fn check_contacts<D: Domain>(
     m: &D,
     validity: &dyn Validity<D>,
@@ -408,6 +410,14 @@ pub fn check_contacts<D: Domain>(
     let about = || format!("check_contacts(&{instances:?}, &{from:?}, &{ts:?})");
     let check = || {
         for instance in instances {
+            let mut rng = rng_of(from);
+            let half = instance.at(m, 0.5, from);
+            let mut states: Vec<_> = (0..ANYWHERE).map(|_| elsewhere(m, &half, &mut rng)).collect();
+            // Where only the robot is elsewhere more is free.
+            states.extend((0..ANYWHERE).map(|_| State { robot: m.robot().sample(&mut rng), ..half.clone() }));
+            states.extend(borders(m, validity, &states, &mut rng));
+            exempts(m, validity, instance, from, &states)
+                .map_err(|broken| broken.of(format_args!("instance {:?}", instance.label)))?;
             let Some(name) = instance.object.map(|id: ObjectId| m.component_name(ComponentId::Object(id))) else {
                 continue;
             };
@@ -426,6 +436,9 @@ pub fn check_contacts<D: Domain>(
     };
     watched(&about, check).map_err(|broken| broken.replayed_by(about))
 }
+
+/// How many states anywhere show what contacts excuse.
+const ANYWHERE: usize = 48;
 
 /// Is it the robot that touches?
 fn is_of_the_robot<D: Domain>(

@@ -24,22 +24,22 @@ pub const COVERS: &str = "sampler.covers: every component that can move is named
 
 /// Covers the room.
 pub const FILLS: &str =
-    "sampler.fills: samples of a component come into every sixth of where its space draws it, along every coordinate";
+    "sampler.fills: samples of a component come into every twelfth of where its space draws it, along every coordinate";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[INSIDE, NAMES, SEEDED, COVERS, FILLS];
 
 /// How many samples each check draws: a fault in one of a thousand is then seen in the cases of one test.
 const DRAWS: u64 = 16;
-/// So many samples that name a component say whether they fill its space. That a sixth stays empty by chance happens once in
-/// 10^12 times; if half of them come from a goal, once in 10^6.
-const ENOUGH: usize = 160;
+/// So many samples that name a component say whether they fill its space. That a twelfth stays empty by chance happens once in
+/// 10^10 times; if half of them come from a goal, once in 10^5.
+const ENOUGH: usize = 300;
 /// So many samples are drawn at least to see whether they fill the space.
 const FILLING: u64 = 1024;
 /// Into how many parts of equal probability the space is cut along each coordinate.
-const PARTS: usize = 6;
+const PARTS: usize = 12;
 /// How many samples of the space itself say where they are.
-const REFERENCE: u64 = 128;
+const REFERENCE: u64 = 480;
 
 /// All laws of a sampler, for one seed.
 ///
@@ -116,7 +116,7 @@ pub fn check_sampler_covers<D: Domain>(
     watched(&about, check).map_err(|broken| broken.replayed_by(about))
 }
 
-/// Every sixth of the space's own samples, along every coordinate, and by the distance from two of them, has some of `found`.
+/// Every twelfth of the space's own samples, along every coordinate, and by the distance from two of them, has some of `found`.
 fn fills<'a, S: ComponentSpace>(
     space: &S,
     found: impl Iterator<Item = &'a S::Config>,
@@ -146,7 +146,7 @@ fn fills<'a, S: ComponentSpace>(
             let is_hit = found.iter().any(|q| (low..=high).contains(&measure(q)));
             let what = if i < count { format!("coordinate {i}") } else { "distance from a sample".to_owned() };
             let text = || format!("none of {} samples has its {what} in [{low:?}, {high:?}]", found.len());
-            ensure(FILLS, is_hit, text, "some: the space draws a sixth of its own there")?;
+            ensure(FILLS, is_hit, text, "some: the space draws a twelfth of its own there")?;
         }
     }
     Ok(())

@@ -63,7 +63,8 @@ pub const NAN_FAR: &str = "space.nan-far: nothing that is NaN is within toleranc
 /// Pure.
 pub const PURE: &str = "space.pure: the same question has the same answer, bit for bit, whenever it is asked";
 /// Degrees of freedom.
-pub const DIMENSION: &str = "space.dimension: a space whose samples differ has at least one degree of freedom";
+pub const DIMENSION: &str =
+    "space.dimension: a space whose samples differ has a degree of freedom, and at most as many as it has numbers";
 /// The tolerance is small.
 pub const TOLERANCE_SMALL: &str =
     "space.tolerance-small: the tolerance is at most a hundredth of the way between samples";

@@ -8,14 +8,16 @@ use rand::RngExt;
 use crate::domain::Domain;
 use crate::motion::{Instance, Motion};
 use crate::random::{Purpose, stream};
-use crate::state::State;
+use crate::space::ComponentSpace;
+use crate::state::{ComponentId, State};
 use crate::validity::{Blame, FreePrefix, Validity};
 
+use super::feed::components;
 use super::watch::{entering, watched};
 use super::{Broken, ensure, equal};
 
 mod oracle;
-mod outside;
+pub(super) mod outside;
 
 pub use oracle::{Free, check_by_oracle};
 
@@ -46,12 +48,18 @@ pub const ENLARGED: &str = "validity.enlarged: enlarging an obstacle never makes
 pub const ORACLE: &str = "validity.oracle: what the fast check calls free, the exact oracle calls free";
 /// What is no number.
 pub const NAN: &str = "validity.nan: a state with a component that is NaN or infinite is not valid, whatever may touch";
+/// In the spaces.
+pub const INSIDE: &str = "validity.inside: no state of a free prefix has a component that moves outside of its space";
 /// Exemptions end at the object.
-pub const EXEMPTS: &str =
-    "validity.exempts: an allowed contact excuses only bodies that the instance names, moves or has at hand";
+pub const EXEMPTS: &str = "validity.exempts: an allowed contact excuses only bodies that the instance names, moves or has at hand, and of two objects only those that touch on its way";
 /// Kinds of blame.
 pub const BLAME_KIND: &str =
     "validity.blame-kind: the kind of a blame fits the names, and who it names is really to blame";
+/// Without the robot.
+pub const WITHOUT_ROBOT: &str = "validity.without-robot: without the robot the same objects are in the way wherever it is, and none that are not with it";
+/// Held objects.
+pub const HELD: &str =
+    "validity.held: where an object at rest would be in something fixed, it is not free in the hand either";
 /// The user's oracle.
 pub const LAX: &str = "validity.lax: check never calls free what the user's oracle calls blocked";
 /// The user's oracle, the other way round.
@@ -73,8 +81,11 @@ pub const LAWS: &[&str] = &[
     ENLARGED,
     ORACLE,
     NAN,
+    INSIDE,
     EXEMPTS,
     BLAME_KIND,
+    WITHOUT_ROBOT,
+    HELD,
     LAX,
     STRICT,
     ORACLE_PREFIX,
@@ -178,6 +189,25 @@ impl<D: Domain> Trial<'_, D> {
                 let broken = Broken::new(ONE_BY_ONE, blame.to_string(), format!("free up to {:?}", free.fraction));
                 return Err(broken.at(t));
             }
+            self.inside(t)?;
+        }
+        Ok(())
+    }
+
+    /// What moves is in its space, if it begins there.
+    fn inside(&self, t: f64) -> Result<(), Broken> {
+        let state = self.instance.at(self.m, t, self.from);
+        for component in components(self.m, self.instance.moves) {
+            let is_inside = |state: &State<D>| match component {
+                ComponentId::Robot => self.m.robot().contains(&state.robot),
+                ComponentId::Object(id) => {
+                    let space = self.m.objects().get(id.index());
+                    space.zip(state.object(id)).is_none_or(|(space, at)| space.contains(at))
+                }
+            };
+            let holds = is_inside(&state) || !is_inside(self.from);
+            ensure(INSIDE, holds, || format!("free through {state:?}"), "inside its space")
+                .map_err(|broken| broken.at(t).of(self.m.component_name(component)))?;
         }
         Ok(())
     }

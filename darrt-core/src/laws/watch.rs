@@ -54,6 +54,8 @@ struct Watch {
     calls: AtomicU64,
     /// The call that is under way.
     call: Mutex<&'static str>,
+    /// The checks within the check, each with its arguments.
+    within: Mutex<Vec<String>>,
     is_over: Mutex<bool>,
     over: Condvar,
 }
@@ -88,7 +90,12 @@ impl Watch {
     fn hang(&self, patience_s: f64, about: &(dyn Fn() -> String + Sync)) -> Broken {
         let call = *locked(&self.call);
         let found = format!("{call} has not come back after {patience_s:?} s");
-        Broken::new(RETURNS, found, "an answer").of(call).replayed_by(about)
+        Broken::new(RETURNS, found, "an answer").of(call).replayed_by(|| self.innermost().unwrap_or_else(about))
+    }
+
+    /// The check that has the arguments of the call.
+    fn innermost(&self) -> Option<String> {
+        locked(&self.within).last().cloned()
     }
 }
 
@@ -100,14 +107,28 @@ pub fn with_patience<T>(seconds: f64, work: impl FnOnce() -> T) -> T {
     done
 }
 
-/// Tells the watchdog that the next call begins.
-pub(super) fn entering(call: &'static str) {
+/// Tells the watchdog that the next call begins. For checks of your own as well.
+pub fn entering(call: &'static str) {
     NOW.with_borrow(|now| {
         if let Some(watch) = now {
             *locked(&watch.call) = call;
             watch.calls.fetch_add(1, SeqCst);
         }
     });
+}
+
+/// Tells the watchdog what calls in `work` are asked: what it says if one of them hangs.
+pub(super) fn asking<T>(about: impl FnOnce() -> String, work: impl FnOnce() -> T) -> T {
+    let watch = NOW.with_borrow(Clone::clone);
+    if let Some(watch) = &watch {
+        locked(&watch.within).push(about());
+    }
+    let done = work();
+    // Not after a panic: then it says where that was.
+    if let Some(watch) = &watch {
+        locked(&watch.within).pop();
+    }
+    done
 }
 
 /// Tells the watchdog of calls on other threads.
@@ -135,13 +156,13 @@ pub(super) fn patience_s() -> f64 {
 }
 
 /// Runs a check under the watchdog; `about` is the call that shows a hang or a panic again. A check within a check is under
-/// the watchdog of the outer one.
-pub(super) fn watched<T>(
-    about: &(dyn Fn() -> String + Sync),
-    work: impl FnOnce() -> Result<T, Broken>,
-) -> Result<T, Broken> {
+/// the watchdog of the outer one. For checks of your own as well.
+///
+/// # Errors
+/// What `work` returns, [`PANICS`], or [`RETURNS`] for endless drawing.
+pub fn watched<T>(about: &(dyn Fn() -> String + Sync), work: impl FnOnce() -> Result<T, Broken>) -> Result<T, Broken> {
     if NOW.with_borrow(Option::is_some) {
-        return work();
+        return asking(about, work);
     }
     let watch = Arc::new(Watch::default());
     let (patience_s, listener) = (PATIENCE.get(), LISTENER.with_borrow(Clone::clone));
@@ -166,7 +187,7 @@ pub(super) fn watched<T>(
         } else {
             Broken::new(PANICS, message(&*payload), "no panic")
         };
-        Err(broken.of(call).replayed_by(about))
+        Err(broken.of(call).replayed_by(|| watch.innermost().unwrap_or_else(about)))
     })
 }
 

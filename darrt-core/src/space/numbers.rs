@@ -3,7 +3,7 @@
 
 use std::any::Any;
 
-use nalgebra::{Isometry2, Isometry3, Point2, Point3, Vector2, Vector3};
+use nalgebra::{Isometry2, Isometry3, Matrix, Point2, Point3, Vector2, Vector3};
 
 /// Calls `visit` with every number of `q`, in a fixed order: of an `f64`, an array of up to twelve, a vector of them, a pair,
 /// or a point, vector or pose of nalgebra. Of other types with none.
@@ -47,9 +47,9 @@ fn slice_of(q: &mut dyn Any) -> Option<&mut [f64]> {
         return q.downcast_mut::<Point3<f64>>().map(|p| p.coords.as_mut_slice());
     }
     if q.is::<Vector2<f64>>() {
-        return q.downcast_mut::<Vector2<f64>>().map(|v| v.as_mut_slice());
+        return q.downcast_mut::<Vector2<f64>>().map(Matrix::as_mut_slice);
     }
-    q.downcast_mut::<Vector3<f64>>().map(|v| v.as_mut_slice())
+    q.downcast_mut::<Vector3<f64>>().map(Matrix::as_mut_slice)
 }
 
 #[cfg(test)]

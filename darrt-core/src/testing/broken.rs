@@ -91,12 +91,12 @@ impl Case {
 pub fn page(title: &str, groups: &[(&str, &[&'static str])], cases: &[Case]) -> String {
     let mut text = format!("# {title}\n\n");
     for (heading, laws) in groups {
-        text.push_str(&format!("## {heading}\n\n| law | says | catches, for example |\n|---|---|---|\n"));
+        text.extend(["## ", heading, "\n\n| law | says | catches, for example |\n|---|---|---|\n"]);
         for law in *laws {
             let (name, says) = law.split_once(": ").unwrap_or((law, ""));
             let caught = cases.iter().filter(|case| case.law == *law);
             let faults: Vec<_> = caught.map(|case| format!("*{}*: {}", case.name, case.wrong)).collect();
-            text.push_str(&format!("| `{name}` | {says} | {} |\n", faults.join("; ")));
+            text.extend(["| `", name, "` | ", says, " | ", &faults.join("; "), " |\n"]);
         }
         text.push('\n');
     }

@@ -1,6 +1,7 @@
 //! Laws of [`Manipulator`].
 
 use darrt_core::laws::Broken;
+use darrt_core::laws::watch::watched;
 use darrt_core::random::{Purpose, Stream, stream};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
@@ -8,6 +9,7 @@ use crate::arm_space::ArmSpace;
 use crate::manipulator::{Configuration, Manipulator};
 
 mod description;
+mod extremes;
 mod inverse;
 mod line;
 mod links;
@@ -74,8 +76,26 @@ pub const INVERSE_FINDS: &str =
 /// Bases are of use.
 pub const BASE_FINDS: &str = "manipulator.base-finds: from enough of the bases that base_for draws, may_reach is true";
 
+/// What is no pose.
+pub const NAN: &str = "manipulator.nan: a pose with NaN in it is not reached, and a place with NaN in it is no answer";
+/// Too far away.
+pub const MAY_NOT_REACH: &str = "manipulator.may-not-reach: may_reach is false for what is a hundred metres away";
+/// Pairs.
+pub const PAIRS: &str = "manipulator.pairs: a robot of more than two links names pairs that can collide, each once";
+/// Travel is of use.
+pub const TRAVEL_TIGHT: &str =
+    "manipulator.travel-tight: travel_m is at most a hundred times as far as the farthest point of the robot travels";
+/// Strength.
+pub const STRENGTH: &str =
+    "manipulator.strength: grip, payload and push force are positive, and the pads have a length";
+
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
+    NAN,
+    MAY_NOT_REACH,
+    PAIRS,
+    TRAVEL_TIGHT,
+    STRENGTH,
     COUNTS,
     LIMITS,
     LINKS,
@@ -146,6 +166,7 @@ pub fn check_manipulator<M: Manipulator>(
     seed: u64,
     claims: &ManipulatorClaims,
 ) -> Result<(), Broken> {
+    let about = || format!("check_manipulator(&robot, [&{a:?}, &{b:?}], {gaps_m:?}, {seed}, &{claims:?})");
     let check = || {
         description::check(robot)?;
         let trial = Trial { robot, space: space_of(robot)?, a, b, gaps_m, seed, claims };
@@ -153,12 +174,11 @@ pub fn check_manipulator<M: Manipulator>(
         trial.inverse()?;
         trial.line()?;
         trial.travel()?;
+        trial.extremes()?;
         // Once more, after all the other questions.
         trial.purity()
     };
-    check().map_err(|broken| {
-        broken.replayed_by(|| format!("check_manipulator(&robot, [&{a:?}, &{b:?}], {gaps_m:?}, {seed}, &{claims:?})"))
-    })
+    watched(&about, check).map_err(|broken| broken.replayed_by(about))
 }
 
 struct Trial<'a, M: Manipulator> {

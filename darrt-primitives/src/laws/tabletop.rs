@@ -11,6 +11,7 @@ use nalgebra::{Isometry3, Point3};
 use crate::manipulator::Manipulator;
 use crate::tabletop::{Tabletop, TabletopState};
 
+mod claims;
 mod contacts;
 mod hand;
 mod held;
@@ -56,9 +57,18 @@ pub const FINGERS: &str = "tabletop.fingers: the fingers may touch what they pus
 /// Limits.
 pub const INSIDE: &str = "tabletop.inside: base and arm stay within their limits all the way, if they begin there";
 
+/// One way.
+pub const ONE_WAY: &str = "tabletop.one-way: what pushes a resting object does not claim that it can be run backwards";
+/// What is declared.
+pub const DECLARED: &str =
+    "tabletop.declared: an instance declares to move what it holds, and of the others only the object that it names";
+/// The fingers.
+pub const GAP: &str = "tabletop.gap: the fingers open between 0 and their widest gap";
+
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
-    HELD_RIGID, STILL, SUPPORT, RAY, TURN, CONTACT, TOUCH, ATTACH, PICK_YAW, RELEASE, MODES, EXEMPT, STRAIGHT, RETREAT,
+    ONE_WAY, DECLARED, GAP, INSIDE, FINGERS, HELD_RIGID, STILL, SUPPORT, RAY, TURN, CONTACT, TOUCH, ATTACH, PICK_YAW,
+    RELEASE, MODES, EXEMPT, STRAIGHT, RETREAT,
 ];
 
 /// How exactly instances keep to their lines.
@@ -124,6 +134,7 @@ pub fn check_tabletop_instance<M: Manipulator>(
         trial.exemptions()?;
         trial.held()?;
         trial.pushed()?;
+        trial.claims()?;
         trial.hand()
     };
     check().map_err(|broken: Broken| {
@@ -162,6 +173,8 @@ impl<'a, M: Manipulator> Trial<'a, M> {
     ) -> Self {
         let knots = instance.motion.knots().iter().map(|t| (*t, true));
         let mut all: Vec<_> = ts.iter().map(|t| (*t, false)).chain(knots).collect();
+        all.extend((1..claims.looks).map(|i| (f64::from(i) / f64::from(claims.looks), false)));
+        all.extend([1e-6, 1e-3, 1.0 - 1e-3, 1.0 - 1e-6].map(|t| (t, false)));
         all.retain(|(t, _)| 0.0 < *t && *t < 1.0);
         all.push((f64::MIN_POSITIVE, true));
         all.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -10,15 +10,28 @@ use darrt_core::laws::Broken;
 pub use darrt_core::testing::broken::Case;
 
 mod bench;
+mod grasps;
 mod instances;
 mod inverses;
 mod jacobians;
+mod limits;
+mod moments;
 mod pushes;
 mod robots;
 
 /// All broken implementors of this crate's traits.
 pub fn cases() -> Vec<Case> {
-    [robots::cases(), inverses::cases(), jacobians::cases(), instances::cases(), pushes::cases()].concat()
+    [
+        robots::cases(),
+        inverses::cases(),
+        limits::cases(),
+        jacobians::cases(),
+        instances::cases(),
+        pushes::cases(),
+        moments::cases(),
+        grasps::cases(),
+    ]
+    .concat()
 }
 
 /// The bench itself is at fault: never for the constants here.

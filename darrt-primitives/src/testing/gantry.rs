@@ -58,6 +58,8 @@ pub struct Gantry {
     pub links: Vec<RobotLink>,
     /// [`Manipulator::hand`].
     pub hand: Gripper,
+    /// [`Manipulator::payload_kg`].
+    pub payload_kg: f64,
 }
 
 /// The gripper: two plates.
@@ -65,6 +67,10 @@ pub struct Gantry {
 pub struct Gripper {
     /// [`Hand::max_gap_m`].
     pub max_gap_m: f64,
+    /// [`Hand::pad_length_m`].
+    pub pad_length_m: f64,
+    /// [`Hand::grip_force_n`].
+    pub grip_force_n: f64,
 }
 
 impl Hand for Gripper {
@@ -78,6 +84,14 @@ impl Hand for Gripper {
 
     fn tip_half_width_m(&self) -> f64 {
         TIP_HALF_WIDTH_M
+    }
+
+    fn pad_length_m(&self) -> f64 {
+        self.pad_length_m
+    }
+
+    fn grip_force_n(&self) -> f64 {
+        self.grip_force_n
     }
 }
 
@@ -113,7 +127,8 @@ impl Gantry {
             weights_m: vec![1.0, 1.0, 1.0, 1.0, 0.2, 0.2, 0.2],
             self_pairs: vec![(0, 2), (0, 3), (0, 4)],
             links: LINKS.into_iter().map(link).collect::<Result<_, GeomError>>()?,
-            hand: Gripper { max_gap_m: MAX_GAP_M },
+            hand: Gripper { max_gap_m: MAX_GAP_M, pad_length_m: 2.0 * TIP_HALF_WIDTH_M, grip_force_n: f64::INFINITY },
+            payload_kg: f64::INFINITY,
         })
     }
 }
@@ -192,5 +207,9 @@ impl Manipulator for Gantry {
 
     fn joint_weights_m(&self) -> &[f64] {
         &self.weights_m
+    }
+
+    fn payload_kg(&self) -> f64 {
+        self.payload_kg
     }
 }

@@ -14,6 +14,9 @@ use crate::state::{ComponentId, ObjectId, State};
 /// How many pairs of objects and targets decide whether objects near their targets are nearer.
 const PAIRS: usize = 16;
 
+/// Into how many steps the way of the robot is cut.
+const STEPS: u32 = 128;
+
 /// A distance under test.
 pub(super) struct Trial<'a, D: Domain> {
     pub(super) m: &'a D,
@@ -65,6 +68,18 @@ impl<D: Domain> Trial<'_, D> {
         }
         let to = PartialState::anywhere(self.m).with_robot(self.m, end.robot.clone());
         let at = |t: f64| State { robot: robot.interpolate(start, &end.robot, t), ..self.from.clone() };
+        let mut before: Option<f64> = None;
+        for step in 0..STEPS {
+            let here = at(f64::from(step) / f64::from(STEPS));
+            if to.is_met(self.m, &here) {
+                break;
+            }
+            let metres = (self.d)(&here, &to);
+            let text = || format!("{metres:?} m, {step} of {STEPS} steps on the way, as one step before");
+            ensure(RESOLVES, before != Some(metres), text, "another distance: no threshold, steps or plateau")
+                .map_err(|broken| broken.of(self.m.component_name(ComponentId::Robot)))?;
+            before = Some(metres);
+        }
         let [whole, half, rest] = [0.0, 0.5, 0.9].map(|t| (self.d)(&at(t), &to));
         let text = || format!("{whole:?}, {half:?} and {rest:?} m at 0, 0.5 and 0.9 of the way");
         ensure(RESOLVES, rest < half && half < whole, text, "less and less")

@@ -26,7 +26,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    pub(super) fn count(&self, which: &AtomicU64) {
+    pub(super) fn count(which: &AtomicU64) {
         which.fetch_add(1, Relaxed);
     }
 
@@ -38,6 +38,9 @@ impl Tally {
 /// A case: its number is all that it depends on, and the level to which it is made simpler.
 type Case<D> = Box<dyn Fn(&World<D>, u64, u8) -> Result<(), Broken> + Send>;
 
+/// What is looked at once.
+type Once<D> = Box<dyn FnOnce(&World<D>, &mut Row) -> Result<(), Broken> + Send>;
+
 /// One row to be.
 pub(super) struct Plan<D: Domain> {
     pub(super) subject: String,
@@ -46,7 +49,7 @@ pub(super) struct Plan<D: Domain> {
     pub(super) cases: u64,
     pub(super) case: Case<D>,
     /// What is looked at once, after the cases, and may warn.
-    pub(super) finally: Box<dyn FnOnce(&World<D>, &mut Row) -> Result<(), Broken> + Send>,
+    pub(super) finally: Once<D>,
 }
 
 impl<D: Domain> Plan<D> {

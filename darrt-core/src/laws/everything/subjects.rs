@@ -45,7 +45,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { cases: 384, calls: 8192, iterations: 60, apart_ms: 1100, seed: 0, only: None, regressions: None }
+        Self { cases: 384, calls: 16384, iterations: 60, apart_ms: 1100, seed: 0, only: None, regressions: None }
     }
 }
 
@@ -53,6 +53,8 @@ impl Default for Effort {
 pub struct Subjects<D: Domain> {
     pub(super) start: State<D>,
     pub(super) goal: Option<Arc<dyn Goal<D>>>,
+    /// A state that satisfies the goal.
+    pub(super) in_goal: Option<State<D>>,
     pub(super) primitives: Arc<[Box<dyn Primitive<D>>]>,
     pub(super) validity: Option<Arc<dyn Validity<D>>>,
     pub(super) oracle: Option<Oracle<D>>,
@@ -86,6 +88,7 @@ impl<D: Domain> Subjects<D> {
         Self {
             start,
             goal: None,
+            in_goal: None,
             primitives: Arc::from(Vec::new()),
             validity: None,
             oracle: None,
@@ -114,6 +117,12 @@ impl<D: Domain> Subjects<D> {
     #[must_use]
     pub fn goal(self, goal: impl Goal<D> + 'static) -> Self {
         Self { goal: Some(Arc::new(goal)), ..self }
+    }
+
+    /// With a state that satisfies the goal, for a goal in a mode that is hard to come to.
+    #[must_use]
+    pub fn in_goal(self, state: State<D>) -> Self {
+        Self { in_goal: Some(state), ..self }
     }
 
     /// With these primitives.

@@ -6,23 +6,43 @@ use std::sync::Arc;
 use rand::RngExt;
 
 use super::subjects::Subjects;
+use crate::distance::GreedyVisit;
 use crate::domain::Domain;
+use crate::extend::ExtendOptions;
 use crate::laws::Broken;
 use crate::laws::feed::elsewhere;
-use crate::laws::watch::{drawing, entering, or_abandon, watched};
+use crate::laws::watch::{PANICS, asking, drawing, entering, guarded, or_abandon, watched};
 use crate::partial::PartialState;
 use crate::problem::Problem;
 use crate::random::{Purpose, Stream, stream};
+use crate::sample::{GoalBiased, RandomSubset};
+use crate::search::{Darrt, Strategy};
 use crate::space::{ComponentSpace, GroupSet};
 use crate::state::{ObjectId, State};
 
 /// Walks from the start, and how many steps each has at most.
 const WALKS: u64 = 12;
 const STEPS: u64 = 6;
+/// How many times as many iterations as the planner is checked with the search for states takes, and how many it finds at most.
+pub(super) const GROWTH: u64 = 20;
+const MOST_NODES: usize = 512;
 /// How often a state anywhere is drawn until one is valid.
 const TRIES: usize = 12;
 /// At this level a case is as simple as it gets; at 0 it is as it was drawn.
 pub(super) const SIMPLEST: u8 = 5;
+
+/// Without a strategy of one's own.
+pub(super) fn default_strategy<D: Domain>() -> Option<Strategy<D>> {
+    Some(Strategy {
+        sampler: Box::new(GoalBiased::new(RandomSubset, 0.2).ok()?),
+        distance: Box::new(GreedyVisit),
+        extend: ExtendOptions::default(),
+        reroute: None,
+        try_penalty_m: 0.0,
+        shorten: crate::shorten::ShortenOptions::default(),
+        improve: None,
+    })
+}
 
 /// What all rows share.
 pub(super) struct World<D: Domain> {
@@ -46,9 +66,31 @@ impl<D: Domain> World<D> {
                 for walk in 0..WALKS {
                     world.walk(walk)?;
                 }
+                world.grow();
                 Ok(world)
             })
         })
+    }
+
+    /// A search leads to modes that no random walk comes to. What goes wrong in it is found out, and told, by the rows.
+    fn grow(&mut self) {
+        let iterations = GROWTH * self.subjects.effort.iterations;
+        let Some(Ok(problem)) = self.problem().filter(|_| iterations > 0) else { return };
+        let Some(strategy) = self.subjects.strategy.clone().or_else(|| default_strategy().map(Arc::new)) else {
+            return;
+        };
+        let grown = guarded(PANICS, || {
+            let mut search = Darrt::new(&problem, &strategy, self.seed, 0, MOST_NODES);
+            for _ in 0..iterations {
+                entering("an iteration of the search");
+                let step = search.step();
+                if step.solution.is_some() || step.stop.is_some() {
+                    break;
+                }
+            }
+            search.tree().iter().map(|(_, node)| node.state.clone()).collect::<Vec<_>>()
+        });
+        self.pool.extend(grown.unwrap_or_default());
     }
 
     fn walk(&mut self, walk: u64) -> Result<(), Broken> {
@@ -58,8 +100,9 @@ impl<D: Domain> World<D> {
             let to = self.target(&here, &mut rng, 0);
             let mut useful = Vec::new();
             for primitive in self.subjects.primitives.iter() {
+                let about = || format!("useful of {}, from &{here:?} to &{to:?}", primitive.name());
                 entering("useful");
-                if primitive.useful(&self.m, &here, &to) {
+                if asking(about, || primitive.useful(&self.m, &here, &to)) {
                     useful.push(primitive);
                 }
             }
@@ -68,7 +111,9 @@ impl<D: Domain> World<D> {
             }
             let primitive = useful.swap_remove(rng.random_range(0..useful.len()));
             let draws = stream(self.seed, 12 + walk, step, Purpose::Extend);
-            let found = drawing("propagate", draws, |rng| primitive.propagate(&self.m, &here, &to, rng))?;
+            let about = || format!("propagate of {}, from &{here:?} to &{to:?}, step {step}", primitive.name());
+            let call = || drawing("propagate", draws, |rng| primitive.propagate(&self.m, &here, &to, rng));
+            let found = asking(about, call)?;
             for instance in found.into_iter().flatten() {
                 entering("free_prefix");
                 let validity = self.subjects.validity.as_ref();

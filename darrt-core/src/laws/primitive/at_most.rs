@@ -71,7 +71,8 @@ impl<D: Domain> Trial<'_, '_, D> {
                 continue;
             }
             let reach = |id: ObjectId| at.object(id).map(|place| self.m.reach(&at.robot, id, place));
-            let nearest = match instance.object {
+            // At the start the robot may leave another object than the one that it goes to.
+            let nearest = match instance.object.filter(|_| t > 0.0) {
                 Some(id) => reach(id),
                 None => (0..at.objects.len()).filter_map(|i| reach(ObjectId::new(i))).min_by(f64::total_cmp),
             };

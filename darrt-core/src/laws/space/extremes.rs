@@ -142,6 +142,9 @@ pub(super) fn extent<S: ComponentSpace>(space: &S, a: &S::Config, seed: u64) -> 
     }
     let text = || format!("dimension 0, but {}", if widest > 0.0 { "samples differ" } else { "not all equal" });
     ensure(DIMENSION, space.dimension() > 0 || !differs, text, "at least 1: samples differ")?;
+    let count = count(space, a);
+    let text = || format!("dimension {} of {count} numbers", space.dimension());
+    ensure(DIMENSION, count == 0 || space.dimension() <= count, text, "at most as many as there are numbers")?;
     if widest > POINT_M {
         at_most(TOLERANCE_SMALL, space.tolerance(), TOLERANCE_SHARE * widest, 0.0)?;
     }

@@ -5,12 +5,11 @@ use rand::RngExt;
 use super::{LAX, ORACLE_PREFIX, PURE, STRICT};
 use crate::domain::Domain;
 use crate::laws::Broken;
-use crate::laws::feed::{cornered, elsewhere, rng_of};
+use crate::laws::feed::{cornered, drift, elsewhere, everything, piled, rng_of};
 use crate::laws::motion::component_travel;
 use crate::laws::watch::{entering, watched};
 use crate::motion::{Instance, Waypoints};
-use crate::space::ComponentSpace;
-use crate::state::{ComponentSet, State};
+use crate::state::{ComponentId, ComponentSet, State};
 use crate::validity::Validity;
 
 /// Is a state free, if nothing may touch? As slow and as obvious as its author likes.
@@ -19,7 +18,7 @@ pub type Free<'a, D> = &'a (dyn Fn(&D, &State<D>) -> bool + Sync);
 /// How often a border between free and blocked is halved.
 const HALVINGS: u32 = 12;
 /// How many pairs of states a border is looked for between.
-const BORDERS: usize = 96;
+const BORDERS: usize = 160;
 /// Of what the oracle calls free at least this share is accepted, of at least [`ENOUGH`] states.
 const LEAST_SHARE: f64 = 0.5;
 const ENOUGH: usize = 60;
@@ -78,8 +77,10 @@ impl<D: Domain> Trial<'_, D> {
         }
         for state in states {
             let corner = cornered(self.m, state, &mut rng);
-            let is_free = self.free(&corner);
-            all.push((corner, is_free));
+            for state in std::iter::once(corner).chain(piled(self.m, state, &mut rng)) {
+                let is_free = self.free(&state);
+                all.push((state, is_free));
+            }
         }
         let borders = self.borders(&all, &mut rng);
         all.extend(borders);
@@ -87,13 +88,20 @@ impl<D: Domain> Trial<'_, D> {
         self.along(&all)
     }
 
-    /// Both sides of the border between a free state and a blocked one, the robot straight between them.
+    /// Both sides of the border between a free state and a blocked one, one component straight between them.
     fn borders(&self, all: &[(State<D>, bool)], rng: &mut crate::random::Stream) -> Vec<(State<D>, bool)> {
-        let mut found = Vec::new();
+        let (mut found, movable) = (Vec::new(), everything(self.m));
         for _ in 0..BORDERS {
             let pick = |rng: &mut crate::random::Stream| all.get(rng.random_range(0..all.len().max(1)));
             let (Some((a, true)), Some((b, false))) = (pick(rng), pick(rng)) else { continue };
-            let between = |t: f64| State { robot: self.m.robot().interpolate(&a.robot, &b.robot, t), ..a.clone() };
+            // Of the robot as often as of all objects.
+            let component = movable.get(rng.random_range(0..movable.len())).filter(|_| rng.random_bool(0.5));
+            let component = component.copied().unwrap_or(ComponentId::Robot);
+            let between = |t: f64| {
+                let mut state = a.clone();
+                drift(self.m, &mut state, b, component, t);
+                state
+            };
             let (mut free, mut blocked) = (0.0, 1.0);
             if self.free(&between(1.0)) {
                 continue;
@@ -143,7 +151,8 @@ impl<D: Domain> Trial<'_, D> {
     /// The robot straight from one state to the next: the batch against the oracle, state by state.
     fn along(&self, all: &[(State<D>, bool)]) -> Result<(), Broken> {
         for pair in all.windows(2).take(24) {
-            let [(a, _), (b, _)] = pair else { continue };
+            // A motion begins where it may: from there on everything that moves is looked at.
+            let ([(a, true), (b, _)] | [(b, _), (a, true)]) = pair else { continue };
             let end = State { robot: b.robot.clone(), ..a.clone() };
             let metres = component_travel(self.m, a, &end);
             let Some(motion) = Waypoints::new(vec![a.clone(), end], &[metres], a.mode.clone()) else { continue };

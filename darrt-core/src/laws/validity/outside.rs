@@ -1,25 +1,138 @@
 //! A validity judged from outside: what it makes of numbers that are none, how far an allowed contact reaches, what kinds it
 //! names, and whether it remembers.
 
-use rand::RngExt;
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
-use super::{BLAME_KIND, EXEMPTS, NAN, PURE, Trial};
+use rand::{Rng, RngExt};
+
+use super::{BLAME_KIND, EXEMPTS, NAN, PURE, Trial, WITHOUT_ROBOT};
 use crate::domain::Domain;
-use crate::laws::feed::{components, elsewhere, moved, rng_of, spoilt_states};
+use crate::laws::feed::{components, elsewhere, everything, moved, piled, rng_of, spoilt_states};
 use crate::laws::watch::entering;
 use crate::laws::{Broken, ensure};
+use crate::motion::Instance;
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
-use crate::validity::{Blame, BlockKind};
+use crate::validity::{Blame, BlockKind, Validity};
 
 /// How many spoilt states are shown.
 const SPOILT: usize = 8;
+/// In how many states besides an allowed contact is tried.
+const EXEMPTED: usize = 96;
+/// How many borders of what is in the way are gone to, and how often the way there is halved.
+const BORDERS: usize = 48;
+const HALVINGS: u32 = 14;
 /// How many blames are looked into.
 const BLAMES: usize = 3;
+/// How many states are asked again in which objects are in the way.
+const MET: usize = 6;
 /// How often something is put elsewhere to see whether it was to blame.
 const PLACES: usize = 8;
 /// An object within this reach may be touched from the start on, metres.
 const HAND_M: f64 = 0.1;
+
+/// Names of what the instance may touch: what it names and moves, and what is at hand from the start.
+fn may_touch<D: Domain>(m: &D, instance: &Instance<D>, from: &State<D>) -> Vec<String> {
+    let mut set = instance.moves;
+    if let Some(id) = instance.object {
+        set = set.with(ComponentId::Object(id));
+    }
+    for (i, at) in from.objects.iter().enumerate() {
+        let id = ObjectId::new(i);
+        let metres = m.reach(&from.robot, id, at);
+        if metres.is_nan() || metres <= HAND_M {
+            set = set.with(ComponentId::Object(id));
+        }
+    }
+    let objects = components(m, set).into_iter().filter(|component| *component != ComponentId::Robot);
+    objects.map(|component| m.component_name(component).into_owned()).collect()
+}
+
+/// Just inside of objects that are in the way: from states that are free, the robot straight towards those of `states` where
+/// it meets an object, as far as it comes. What may touch shows in the last millimetres only, if it may not enter. Not so of
+/// what is fixed: there a contact with an object may well ask for less room beside it.
+pub(in crate::laws) fn borders<D: Domain>(
+    m: &D,
+    validity: &dyn Validity<D>,
+    states: &[State<D>],
+    rng: &mut dyn Rng,
+) -> Vec<State<D>> {
+    let judge = |state: &State<D>| {
+        entering("check");
+        validity.check(m, state, &D::Contacts::default())
+    };
+    let meets = |found: Result<(), Blame>| found.is_err_and(|blame| blame.kind == BlockKind::RobotObject);
+    let is_free = |state: &State<D>| judge(state).is_ok();
+    let free: Vec<&State<D>> = states.iter().filter(|state| is_free(state)).collect();
+    let blocked: Vec<&State<D>> = states.iter().filter(|state| meets(judge(state))).collect();
+    let mut found = Vec::new();
+    for _ in 0..BORDERS {
+        let pick =
+            |all: &[&State<D>], rng: &mut dyn Rng| all.get(rng.random_range(0..all.len().max(1))).map(|s| (*s).clone());
+        let (Some(start), Some(into)) = (pick(&free, rng), pick(&blocked, rng)) else { break };
+        let at = |t: f64| State { robot: m.robot().interpolate(&start.robot, &into.robot, t), ..start.clone() };
+        let (mut inside, mut outside) = (1.0, 0.0);
+        if is_free(&at(1.0)) {
+            continue;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            *(if is_free(&at(middle)) { &mut outside } else { &mut inside }) = middle;
+        }
+        let border = at(inside);
+        if meets(judge(&border)) {
+            found.push(border);
+        }
+    }
+    found
+}
+
+/// Parameters at which an instance is asked what it touches.
+const WAY: [f64; 9] = [0.0, 1e-6, 0.02, 0.1, 0.5, 0.9, 0.98, 1.0 - 1e-6, 1.0];
+
+fn pair(blame: &Blame) -> [Arc<str>; 2] {
+    let mut both = [Arc::clone(&blame.first), Arc::clone(&blame.second)];
+    both.sort();
+    both
+}
+
+/// The two bodies of each blame on the way of an instance, if nothing may touch.
+fn needed<D: Domain>(
+    m: &D,
+    validity: &dyn Validity<D>,
+    instance: &Instance<D>,
+    from: &State<D>,
+) -> BTreeSet<[Arc<str>; 2]> {
+    let bare = |t: f64| validity.check(m, &instance.at(m, t, from), &D::Contacts::default());
+    WAY.into_iter().filter_map(|t| Some(pair(&bare(t).err()?))).collect()
+}
+
+/// Of `states`, those that the contacts of `instance` make valid were blamed on something that it may touch.
+pub(in crate::laws) fn exempts<D: Domain>(
+    m: &D,
+    validity: &dyn Validity<D>,
+    instance: &Instance<D>,
+    from: &State<D>,
+    states: &[State<D>],
+) -> Result<(), Broken> {
+    if instance.contacts == D::Contacts::default() {
+        return Ok(());
+    }
+    let (names, needed) = (may_touch(m, instance, from), needed(m, validity, instance, from));
+    for state in states {
+        entering("check");
+        let Err(blame) = validity.check(m, state, &D::Contacts::default()) else { continue };
+        let is_named = names.iter().any(|name| *blame.first == **name || *blame.second == **name);
+        // Another object must be one that it touches on its way.
+        let is_excused = is_named && (blame.kind != BlockKind::ObjectObject || needed.contains(&pair(&blame)));
+        if !is_excused && validity.check(m, state, &instance.contacts).is_ok() {
+            let found = format!("free with {:?}: {state:?}", instance.contacts);
+            return Err(Broken::new(EXEMPTS, found, format!("without: {blame}")));
+        }
+    }
+    Ok(())
+}
 
 impl<D: Domain> Trial<'_, D> {
     pub(super) fn outside(&self, seed: u64) -> Result<(), Broken> {
@@ -31,21 +144,18 @@ impl<D: Domain> Trial<'_, D> {
             let there = elsewhere(self.m, &on_the_way, &mut rng);
             // Everything anywhere; only the robot anywhere; and one object in the place of another.
             let robot = State { robot: there.robot.clone(), ..on_the_way.clone() };
-            let mut pile = on_the_way.clone();
-            let count = pile.objects.len();
-            if count > 1 {
-                let (from, to) = (rng.random_range(0..count), rng.random_range(0..count));
-                if let (Some(q), Some(space)) = (pile.objects.get(from).cloned(), self.m.objects().get(to))
-                    && space.contains(&q)
-                    && let Some(slot) = pile.objects.get_mut(to)
-                {
-                    *slot = q;
-                }
-            }
-            states.extend([there, robot, pile]);
+            states.extend(piled(self.m, &on_the_way, &mut rng));
+            states.extend([there, robot]);
+        }
+        if self.instance.contacts != D::Contacts::default() {
+            let half = self.instance.at(self.m, 0.5, self.from);
+            let mut more: Vec<_> = (0..EXEMPTED).map(|_| elsewhere(self.m, &half, &mut rng)).collect();
+            more.extend(borders(self.m, self.validity, &more, &mut rng));
+            self.exempts(&more)?;
         }
         self.exempts(&states)?;
         self.kinds(&states, &mut rng)?;
+        self.without_robot(&states, &mut rng)?;
         self.remembers_nothing(&states, &mut rng)
     }
 
@@ -67,35 +177,28 @@ impl<D: Domain> Trial<'_, D> {
         Ok(())
     }
 
-    /// Names of what the instance may touch: what it names and moves, and what is at hand from the start.
-    fn may_touch(&self) -> Vec<String> {
-        let mut set = self.instance.moves;
-        if let Some(id) = self.instance.object {
-            set = set.with(ComponentId::Object(id));
-        }
-        for (i, at) in self.from.objects.iter().enumerate() {
-            let id = ObjectId::new(i);
-            let metres = self.m.reach(&self.from.robot, id, at);
-            if metres.is_nan() || metres <= HAND_M {
-                set = set.with(ComponentId::Object(id));
-            }
-        }
-        let objects = components(self.m, set).into_iter().filter(|component| *component != ComponentId::Robot);
-        objects.map(|component| self.m.component_name(component).into_owned()).collect()
+    fn exempts(&self, states: &[State<D>]) -> Result<(), Broken> {
+        exempts(self.m, self.validity, self.instance, self.from, states)
     }
 
-    fn exempts(&self, states: &[State<D>]) -> Result<(), Broken> {
-        if self.instance.contacts == D::Contacts::default() {
-            return Ok(());
-        }
-        let names = self.may_touch();
-        for state in states {
-            let Err(blame) = self.judge(state, &D::Contacts::default()) else { continue };
-            let is_named = names.iter().any(|name| *blame.first == **name || *blame.second == **name);
-            if !is_named && self.judge(state, &self.instance.contacts).is_ok() {
-                let found = format!("free with {:?}: {state:?}", self.instance.contacts);
-                return Err(Broken::new(EXEMPTS, found, format!("without: {blame}")));
-            }
+    /// The robot's place makes no difference to the rules for the objects alone, and they forbid nothing that is allowed.
+    fn without_robot(&self, states: &[State<D>], rng: &mut crate::random::Stream) -> Result<(), Broken> {
+        let Some(alone) = self.validity.without_robot() else { return Ok(()) };
+        for state in states.iter().step_by(3) {
+            entering("check without the robot");
+            let here = alone.check(self.m, state, &D::Contacts::default());
+            let away = moved(self.m, state, ComponentId::Robot, rng);
+            let there = alone.check(self.m, &away, &D::Contacts::default());
+            // A state in which something is held may be wrong because of where the hand is: that says nothing.
+            let collides = |found: &Result<(), Blame>| match found {
+                Ok(()) => Some(false),
+                Err(blame) => is_collision(blame).then_some(true),
+            };
+            let differs = collides(&here).zip(collides(&there)).is_some_and(|(here, there)| here != there);
+            let text = || format!("{here:?}, and {there:?} with the robot elsewhere");
+            ensure(WITHOUT_ROBOT, !differs, text, "the same")?;
+            let is_stricter = here.is_err() && self.judge(state, &D::Contacts::default()).is_ok();
+            ensure(WITHOUT_ROBOT, !is_stricter, || format!("{here:?}"), "free, as with the robot")?;
         }
         Ok(())
     }
@@ -119,17 +222,12 @@ impl<D: Domain> Trial<'_, D> {
             };
             let text = || blame.to_string();
             ensure(BLAME_KIND, fits, text, "a kind that fits the names of the two bodies")?;
-            if seen < BLAMES && self.is_collision(&blame) {
+            if seen < BLAMES && is_collision(&blame) {
                 seen += 1;
                 self.is_to_blame(state, &blame, &objects, rng)?;
             }
         }
         Ok(())
-    }
-
-    fn is_collision(&self, blame: &Blame) -> bool {
-        use BlockKind::{ObjectFixed, ObjectObject, RobotFixed, RobotItself, RobotObject};
-        matches!(blame.kind, RobotFixed | RobotItself | RobotObject | ObjectFixed | ObjectObject)
     }
 
     /// Whoever the kind names is to blame: the same two bodies do not meet wherever it is put.
@@ -166,15 +264,22 @@ impl<D: Domain> Trial<'_, D> {
     fn remembers_nothing(&self, states: &[State<D>], rng: &mut crate::random::Stream) -> Result<(), Broken> {
         let mut all: Vec<&State<D>> = states.iter().step_by(3).collect();
         all.push(self.from);
-        let twins: Vec<State<D>> = all
-            .iter()
-            .map(|state| {
-                // The same but for one component.
-                let movable = components(self.m, ComponentSet::ROBOT.union(self.instance.moves));
-                let which = movable.get(rng.random_range(0..movable.len().max(1))).copied();
-                moved(self.m, state, which.unwrap_or(ComponentId::Robot), rng)
-            })
-            .collect();
+        // An answer that is remembered for the robot alone shows where objects are in its way and then are not.
+        let is_met = |state: &&State<D>| {
+            let found = self.judge(state, &D::Contacts::default());
+            found.is_err_and(|blame| matches!(blame.kind, BlockKind::RobotObject | BlockKind::ObjectObject))
+        };
+        all.extend(states.iter().filter(is_met).take(MET));
+        let everything = everything(self.m);
+        let mut twins: Vec<State<D>> = Vec::new();
+        for state in &all {
+            // The same but for one component, and but for all objects.
+            let movable = components(self.m, ComponentSet::ROBOT.union(self.instance.moves));
+            let which = movable.get(rng.random_range(0..movable.len().max(1))).copied();
+            twins.push(moved(self.m, state, which.unwrap_or(ComponentId::Robot), rng));
+            let objects = everything.iter().filter(|id| **id != ComponentId::Robot);
+            twins.push(objects.fold((*state).clone(), |state, id| moved(self.m, &state, *id, rng)));
+        }
         all.extend(&twins);
         let text = |state: &State<D>| {
             let answer = self.judge(state, &D::Contacts::default());
@@ -191,4 +296,9 @@ impl<D: Domain> Trial<'_, D> {
         }
         Ok(())
     }
+}
+
+fn is_collision(blame: &Blame) -> bool {
+    use BlockKind::{ObjectFixed, ObjectObject, RobotFixed, RobotItself, RobotObject};
+    matches!(blame.kind, RobotFixed | RobotItself | RobotObject | ObjectFixed | ObjectObject)
 }

@@ -7,7 +7,7 @@ use rand::RngExt;
 use super::forge::{Change, Forge, LEAST_M};
 use super::{Way, rejected};
 use crate::domain::Domain;
-use crate::laws::feed::spoilt_states;
+use crate::laws::feed::{components, drift, spoilt_states};
 use crate::laws::motion::component_travel;
 use crate::plan::Plan;
 use crate::random::Stream;
@@ -16,6 +16,8 @@ use crate::state::{ComponentId, ObjectId, State};
 
 /// Between these parameters something is wrong.
 const WINDOW: (f64, f64) = (0.3, 0.7);
+/// What is led into something is already inside of it at these shares of the way.
+const DEEP: [f64; 3] = [0.9, 0.95, 1.0];
 
 pub(super) fn ways<D: Domain>() -> Vec<Way<D>> {
     vec![
@@ -24,6 +26,7 @@ pub(super) fn ways<D: Domain>() -> Vec<Way<D>> {
         Way { name: "stands still, and then jumps to the end", change: stands_still },
         Way { name: "passes through what is in the way", change: |f, rng| penetrates(f, rng, true) },
         Way { name: "passes through what is in the way, in no time", change: |f, rng| penetrates(f, rng, false) },
+        Way { name: "leads an object through what is in the way", change: object_penetrates },
         Way { name: "ends elsewhere", change: |f, rng| ends_elsewhere(f, rng, 1.0) },
         Way { name: "ends nearly there", change: |f, rng| ends_elsewhere(f, rng, 0.05) },
         Way { name: "moves a bystander", change: |f, rng| bystander(f, rng, false) },
@@ -105,7 +108,12 @@ fn penetrates<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream, is_honest: bool
     let half = instance.at(forge.m(), 0.5 * until, forge.plan.start());
     let into = (0..64).find_map(|_| {
         let there = forge.displaced(&half, ComponentId::Robot, rng)?;
-        rejected(forge.judged, &there, instance).then_some(there)
+        // Deep inside, so that a verifier that is content with less room than the validity refuses it as well.
+        let is_deep = DEEP.iter().all(|share| {
+            let robot = forge.m().robot().interpolate(&half.robot, &there.robot, *share);
+            rejected(forge.judged, &State { robot, ..half.clone() }, instance)
+        });
+        is_deep.then_some(there)
     })?;
     let way_m = forge.m().robot().distance(&half.robot, &into.robot);
     let robot = into.robot;
@@ -117,6 +125,27 @@ fn penetrates<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream, is_honest: bool
     });
     // There and back within less than half of the time, while the old motion goes on.
     forge.changed(step, |length| if is_honest { 10.0 * (length + way_m) } else { 0.0 }, change)
+}
+
+/// The same with an object that the step moves, while the robot goes on as before.
+fn object_penetrates<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream) -> Option<Plan<D>> {
+    let step = forge.moving(rng)?;
+    let planned = forge.plan.steps().get(step)?;
+    let mut moved = components(forge.m(), planned.instance.moves).into_iter().filter(|id| *id != ComponentId::Robot);
+    let component = moved.next_back()?;
+    let half = planned.instance.at(forge.m(), 0.5 * planned.until, forge.plan.start());
+    let into = (0..64).find_map(|_| {
+        let there = forge.displaced(&half, component, rng)?;
+        let is_deep = DEEP.iter().all(|share| {
+            let mut state = half.clone();
+            drift(forge.m(), &mut state, &there, component, *share);
+            rejected(forge.judged, &state, &planned.instance)
+        });
+        is_deep.then_some(there)
+    })?;
+    let way_m = component_travel(forge.m(), &half, &into);
+    let change: Change<D> = Arc::new(move |m, t, state| drift(m, state, &into, component, bump(t)));
+    forge.changed(step, |length| 10.0 * (length + way_m), change)
 }
 
 /// The last step ends where the goal is not satisfied, after a motion without jumps.
@@ -139,20 +168,6 @@ fn ends_elsewhere<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream, share: f64)
         return forge.changed(last, |length| length + 4.0 * far_m, change);
     }
     None
-}
-
-/// Brings one component of `state` by a share of the way towards where it is in `there`.
-fn drift<D: Domain>(m: &D, state: &mut State<D>, there: &State<D>, component: ComponentId, share: f64) {
-    match component {
-        ComponentId::Robot => state.robot = m.robot().interpolate(&state.robot, &there.robot, share),
-        ComponentId::Object(id) => {
-            if let (Some(space), Some(slot), Some(to)) =
-                (m.objects().get(id.index()), state.objects.get_mut(id.index()), there.object(id))
-            {
-                *slot = space.interpolate(slot, to, share);
-            }
-        }
-    }
 }
 
 fn bystander<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream, comes_back: bool) -> Option<Plan<D>> {

@@ -15,6 +15,7 @@ use crate::state::{ComponentId, ComponentSet};
 pub(super) fn ways<D: Domain>() -> Vec<Way<D>> {
     vec![
         Way { name: "starts elsewhere", change: starts_elsewhere },
+        Way { name: "starts where its first step ends", change: starts_later },
         Way { name: "no steps at all", change: no_steps },
         Way { name: "the first step is missing", change: |forge, _| without(forge, 0) },
         Way { name: "a step is missing", change: |forge, rng| without(forge, forge.moving(rng)?) },
@@ -35,6 +36,12 @@ pub(super) fn ways<D: Domain>() -> Vec<Way<D>> {
 fn starts_elsewhere<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream) -> Option<Plan<D>> {
     let start = forge.displaced(forge.plan.start(), ComponentId::Robot, rng)?;
     Some(Plan::new(start, forge.steps()))
+}
+
+/// A plan without a fault, of another problem.
+fn starts_later<D: Domain>(forge: &Forge<'_, D>, _: &mut Stream) -> Option<Plan<D>> {
+    let (before, after) = forge.ends(0)?;
+    (before != after).then(|| Plan::new(after.clone(), forge.steps().split_off(1)))
 }
 
 fn no_steps<D: Domain>(forge: &Forge<'_, D>, _: &mut Stream) -> Option<Plan<D>> {

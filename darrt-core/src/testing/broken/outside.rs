@@ -9,6 +9,7 @@ mod hangs;
 mod motions;
 mod primitives;
 mod spaces;
+mod strangers;
 mod validities;
 mod verifiers;
 mod wholes;
@@ -24,6 +25,7 @@ pub(super) fn cases() -> Vec<Case> {
         verifiers::cases(),
         hangs::cases(),
         wholes::cases(),
+        strangers::cases(),
     ]
     .concat()
 }

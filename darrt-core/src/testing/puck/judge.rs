@@ -16,7 +16,7 @@ pub const SPACING_M: f64 = 1e-3;
 /// How deep a touched puck may overlap with the robot, metres: a contact is not a collision.
 pub const CONTACT_M: f64 = 1e-3;
 
-/// No two bodies overlap; those that may touch, by no more than [`CONTACT_M`].
+/// No two bodies overlap; those that may touch, by no more than [`CONTACT_M`]. What is held is where the hand is.
 #[derive(Debug, Clone)]
 pub struct Oracle {
     obstacles: Vec<Obstacle>,
@@ -45,6 +45,12 @@ impl Validity<PuckWorld> for Oracle {
         for ((id, at), puck) in m.ids().zip(&state.objects).zip(m.pucks()) {
             if !m.objects().get(id.index()).is_some_and(|space| space.contains(at)) {
                 return refuse(BlockKind::Limits, &puck.name, "edge of the floor", at);
+            }
+            if let Some((held, offset)) = state.mode.held()
+                && held == id
+                && separation(at, &[state.robot[0] + offset[0], state.robot[1] + offset[1]]) > CONTACT_M
+            {
+                return refuse(BlockKind::Other, &puck.name, "grip of the robot", at);
             }
             for obstacle in &self.obstacles {
                 if overlap(at, puck.radius_m, &obstacle.outline) {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use darrt_core::laws::{Broken, ensure, equal};
 
-use super::{COUNTS, HAND, LIMITS, LINKS};
+use super::{COUNTS, HAND, LIMITS, LINKS, PAIRS, STRENGTH};
 use crate::manipulator::{JointVector, Manipulator};
 
 pub(super) fn check<M: Manipulator>(robot: &M) -> Result<(), Broken> {
@@ -22,7 +22,8 @@ pub(super) fn check<M: Manipulator>(robot: &M) -> Result<(), Broken> {
             .map_err(|broken| broken.of(format_args!("joint {joint}")))?;
     }
     links(robot)?;
-    hand(robot)
+    hand(robot)?;
+    strength(robot)
 }
 
 fn links<M: Manipulator>(robot: &M) -> Result<(), Broken> {
@@ -34,6 +35,22 @@ fn links<M: Manipulator>(robot: &M) -> Result<(), Broken> {
     for (a, b) in robot.self_pairs() {
         let holds = a != b && *a < links.len() && *b < links.len();
         ensure(LINKS, holds, || format!("pair ({a}, {b}) of {} links", links.len()), "two different links")?;
+    }
+    let pairs = robot.self_pairs();
+    let distinct: BTreeSet<_> = pairs.iter().map(|(a, b)| (a.min(b), a.max(b))).collect();
+    let text = || format!("{} pairs, {} of them distinct, for {} links", pairs.len(), distinct.len(), links.len());
+    let is_sound = distinct.len() == pairs.len() && (links.len() <= 2 || !pairs.is_empty());
+    ensure(PAIRS, is_sound, text, "some pairs, each once")
+}
+
+/// Infinite is never the limit; nothing and not a number are no strength.
+fn strength<M: Manipulator>(robot: &M) -> Result<(), Broken> {
+    let hand = robot.hand();
+    let pad = hand.pad_length_m();
+    ensure(STRENGTH, pad.is_finite() && pad > 0.0, || format!("pads of {pad:?} m"), "a finite positive length")?;
+    let all = [("grip", hand.grip_force_n()), ("payload", robot.payload_kg()), ("push force", robot.push_force_n())];
+    for (name, value) in all {
+        ensure(STRENGTH, value > 0.0, || format!("{name} {value:?}"), "positive, or infinite")?;
     }
     Ok(())
 }

@@ -25,12 +25,12 @@ impl<M: Manipulator> Trial<'_, M> {
         Ok(())
     }
 
-    fn reaches(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> Result<(), Broken> {
+    pub(super) fn reaches(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> Result<(), Broken> {
         ensure(MAY_REACH, self.robot.may_reach(base, tool), || "false".to_owned(), "true: a configuration reaches it")
     }
 
     /// Solutions of several draws, each of them twice.
-    fn drawn(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> Result<(), Broken> {
+    pub(super) fn drawn(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> Result<(), Broken> {
         let draw = |attempt| self.robot.inverse(base, tool, &mut self.rng(attempt));
         for attempt in 0..DRAWS {
             let found = draw(attempt);

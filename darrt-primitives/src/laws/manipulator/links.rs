@@ -83,7 +83,7 @@ impl<M: Manipulator> Trial<'_, M> {
     }
 }
 
-fn is_rigid(pose: &Isometry3<f64>) -> Result<(), Broken> {
+pub(super) fn is_rigid(pose: &Isometry3<f64>) -> Result<(), Broken> {
     let place = pose.translation.vector;
     let norm = pose.rotation.quaternion().norm();
     let holds = place.iter().all(|x| x.is_finite()) && (norm - 1.0).abs() <= 1e-9;

@@ -52,7 +52,7 @@ impl<M: Manipulator> Trial<'_, M> {
     }
 
     /// From `a` to `end`: between any two looks every point moves at most its share of the travel.
-    fn bounds(&self, end: &Configuration<M::Joints>) -> Result<(), Broken> {
+    pub(super) fn bounds(&self, end: &Configuration<M::Joints>) -> Result<(), Broken> {
         let looks: Vec<_> = LOOKS.iter().map(|t| (*t, self.space.interpolate(self.a, end, *t))).collect();
         let bound = self.robot.travel_m(self.a, end, 0.0);
         let mut of_each = vec![0.0; self.robot.links().len()];

@@ -10,6 +10,7 @@ use crate::domain::Domain;
 use crate::goal::{AnyOf, Goal};
 use crate::laws::everything::report::Row;
 use crate::laws::everything::world::World;
+use crate::laws::feed::count_of;
 use crate::laws::watch::entering;
 use crate::laws::{
     Broken, check_component_space, check_distance, check_domain, check_goal, check_nearest, check_partial,
@@ -58,7 +59,10 @@ fn spaces<D: Domain>(world: &World<D>) -> Vec<Plan<D>> {
                     }
                 }
             };
-            Plan::new(subject, space::LAWS.len(), cases, case).finally(move |world, _| {
+            Plan::new(subject, space::LAWS.len(), cases, case).finally(move |world, row| {
+                if count_of(&*world.m, &world.subjects.start, component) == 0 {
+                    row.warn("shows no numbers (`ComponentSpace::numbers`): NaN, faces and corners are not fed");
+                }
                 if !world.subjects.fills {
                     return Ok(());
                 }
@@ -82,6 +86,22 @@ fn the_domain<D: Domain>(world: &World<D>) -> Plan<D> {
         let [a, b, c] = [(); 3].map(|()| world.any_state(&mut rng, level));
         check_domain(&*world.m, &world.subjects.spaces, [&a, &b, &c], [0.3, 0.8], number)
     })
+    .finally(|world, row| {
+        let (m, modes) = (&*world.m, modes(world));
+        let pairs = modes.iter().flat_map(|a| modes.iter().map(move |b| (a, b)));
+        if modes.len() > 2 && pairs.into_iter().all(|(a, b)| m.may_go_on(a, b)) {
+            row.warn(format!("may_go_on is true for all pairs of {} modes", modes.len()));
+        }
+        let mut rng = rng_of_case(world.seed);
+        let reaches = |state: &State<D>| {
+            let ids = (0..state.objects.len()).map(ObjectId::new);
+            ids.filter_map(|id| Some(m.reach(&state.robot, id, state.object(id)?))).any(|metres| metres > 0.0)
+        };
+        if !m.objects().is_empty() && !(0..64).any(|_| reaches(&world.any_state(&mut rng, 0))) {
+            row.warn("reach is 0 in 64 of 64 states: tours know nothing of the robot's ways");
+        }
+        Ok(())
+    })
 }
 
 fn targets<D: Domain>(world: &World<D>) -> Plan<D> {
@@ -102,7 +122,7 @@ fn distance_of<D: Domain>(world: &World<D>, index: usize) -> Option<&dyn Distanc
 
 fn distances<D: Domain>(world: &World<D>) -> Vec<Plan<D>> {
     let cases = world.subjects.effort.cases;
-    let count = (0..).take_while(|i| distance_of(world, *i).is_some()).count();
+    let count = usize::from(world.subjects.strategy.is_some()) + world.subjects.distances.len();
     (0..count)
         .map(|index| {
             let case = move |world: &World<D>, number: u64, level: u8| {
@@ -140,6 +160,9 @@ fn the_goal<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
     };
     let once = move |world: &World<D>, row: &mut Row| {
         let (m, subjects) = (&*world.m, &world.subjects);
+        if accepted(world, &*goal).is_none() {
+            row.warn("no mode that was come to satisfies it; give a state in the goal with `in_goal`, if there is one");
+        }
         entering("is_satisfied");
         if goal.is_satisfied(m, &subjects.start) {
             row.warn("satisfied at the start: nothing has to be planned");
@@ -153,7 +176,7 @@ fn the_goal<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
                 goal.is_satisfied(m, &met)
             })
         };
-        if modes.len() > 1 && modes.iter().all(|mode| satisfied(mode)) {
+        if modes.len() > 1 && modes.iter().all(satisfied) {
             row.warn(format!("satisfied in each of {} modes, also when something is still held", modes.len()));
         }
         Ok(())
@@ -176,7 +199,8 @@ fn modes<D: Domain>(world: &World<D>) -> Vec<D::Mode> {
 fn accepted<D: Domain>(world: &World<D>, goal: &dyn Goal<D>) -> Option<D::Mode> {
     let m = &*world.m;
     let target = goal.sample(m, &mut rng_of_case(world.seed))?;
-    modes(world).into_iter().find(|mode| {
+    let given = world.subjects.in_goal.as_ref().map(|state| state.mode.clone());
+    given.into_iter().chain(modes(world)).find(|mode| {
         let met = target.overlay(m, &State { mode: mode.clone(), ..world.subjects.start.clone() });
         goal.is_satisfied(m, &met)
     })
@@ -191,7 +215,7 @@ fn sampler_of<D: Domain>(world: &World<D>, index: usize) -> Option<&dyn Sampler<
 
 fn samplers<D: Domain>(world: &World<D>) -> Vec<Plan<D>> {
     let cases = world.subjects.effort.cases;
-    let count = (0..).take_while(|i| sampler_of(world, *i).is_some()).count();
+    let count = usize::from(world.subjects.strategy.is_some()) + world.subjects.samplers.len();
     let goal_of = |world: &World<D>| {
         let none: Arc<dyn Goal<D>> = Arc::new(AnyOf::new(Vec::new()));
         world.subjects.goal.clone().unwrap_or(none)

@@ -10,9 +10,12 @@ use crate::domain::Domain;
 use crate::laws::everything::report::Row;
 use crate::laws::everything::world::World;
 use crate::laws::primitive::{ENDS, Excuse, FEASIBLE, NOT_EMPTY, PANICS, PrimitiveClaims, Tried};
-use crate::laws::watch::{bounded, entering, guarded};
-use crate::laws::{Broken, MotionClaims, check_contacts, motion, primitive, try_primitive};
-use crate::random::{Purpose, stream};
+use crate::laws::watch::{asking, bounded, entering, guarded};
+use crate::laws::{Broken, MotionClaims, check_contacts, ensure, motion, primitive, try_primitive};
+use crate::partial::PartialState;
+use crate::primitive::Primitive;
+use crate::random::{Purpose, Stream, stream};
+use crate::state::State;
 
 /// Parameters of an instance at which the contact with its object must be allowed.
 const TS: [f64; 4] = [0.2, 0.5, 0.8, 0.95];
@@ -46,13 +49,13 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
             excuse: excuse.as_ref().map(|excuse| excuse as Excuse<'_, D>),
             ..PrimitiveClaims::default()
         };
-        counted.count(&counted.tried);
+        Tally::count(&counted.tried);
         match try_primitive(m, &**primitive, &from, &to, number, &claims)? {
             Tried::NotUseful => {}
-            Tried::Infeasible(_) => counted.count(&counted.hit),
+            Tried::Infeasible(_) => Tally::count(&counted.hit),
             Tried::Propagated(instances) => {
-                counted.count(&counted.hit);
-                counted.count(&counted.reached);
+                Tally::count(&counted.hit);
+                Tally::count(&counted.reached);
                 if let Some(validity) = &subjects.validity {
                     let mut here = from.clone();
                     for instance in instances {
@@ -98,32 +101,39 @@ fn many_calls<D: Domain>(world: &World<D>, index: usize, tally: &Tally) -> Resul
         for attempt in 0..4 {
             let to = world.target(&from, &mut rng, 0);
             began.fetch_add(1, Relaxed);
-            tally.count(&tally.tried);
-            let about = |broken: Broken| {
-                broken.of(primitive.name()).replayed_by(|| {
-                    format!("check_primitive(&{}, &{from:?}, &{to:?}, {number}), draw {attempt}", primitive.name())
-                })
-            };
-            entering("useful");
-            if !guarded(PANICS, || primitive.useful(m, &from, &to)).map_err(about)? {
-                continue;
-            }
-            tally.count(&tally.hit);
-            entering("propagate");
+            Tally::count(&tally.tried);
+            let name = primitive.name();
+            let about = || format!("check_primitive(&{name}, &{from:?}, &{to:?}, {number}), draw {attempt}");
             let draws = stream(number, attempt, 0, Purpose::Extend);
-            let most = PrimitiveClaims::<D>::default().max_draws;
-            let found = bounded(PANICS, ENDS, most, draws, |rng| primitive.propagate(m, &from, &to, rng));
-            if let Ok(instances) = found.map_err(about)? {
-                tally.count(&tally.reached);
-                let is_empty = instances.is_empty();
-                if is_empty {
-                    return Err(about(Broken::new(NOT_EMPTY, "no instances", "at least one")));
-                }
-            }
+            asking(about, || one_call(m, &**primitive, (&from, &to), draws, tally))
+                .map_err(|broken| broken.of(name).replayed_by(about))?;
         }
         if began.load(Relaxed) >= calls {
             break;
         }
     }
     Ok(began.into_inner())
+}
+
+/// Whether it comes back, without panic, and not with nothing.
+fn one_call<D: Domain>(
+    m: &D,
+    primitive: &dyn Primitive<D>,
+    (from, to): (&State<D>, &PartialState<D>),
+    draws: Stream,
+    tally: &Tally,
+) -> Result<(), Broken> {
+    entering("useful");
+    if !guarded(PANICS, || primitive.useful(m, from, to))? {
+        return Ok(());
+    }
+    Tally::count(&tally.hit);
+    entering("propagate");
+    let most = PrimitiveClaims::<D>::default().max_draws;
+    let found = bounded(PANICS, ENDS, most, draws, |rng| primitive.propagate(m, from, to, rng))?;
+    if let Ok(instances) = found {
+        Tally::count(&tally.reached);
+        ensure(NOT_EMPTY, !instances.is_empty(), || "no instances".to_owned(), "at least one")?;
+    }
+    Ok(())
 }

@@ -6,17 +6,18 @@ use rand::RngExt;
 
 use super::{Plan, Tally, rng_of_case};
 use crate::budget::Budget;
-use crate::distance::GreedyVisit;
 use crate::domain::Domain;
-use crate::extend::ExtendOptions;
 use crate::laws::everything::report::Row;
-use crate::laws::everything::world::World;
+use crate::laws::everything::world::{GROWTH, World, default_strategy};
+use crate::laws::feed::elsewhere;
+use crate::laws::planner::Heart;
 use crate::laws::watch::{drawing, entering};
 use crate::laws::{Broken, check_by_oracle, check_planner, check_validity, planner, validity, verifier};
+use crate::partial::PartialState;
 use crate::random::{Purpose, stream};
-use crate::sample::{GoalBiased, RandomSubset};
-use crate::search::Strategy;
-use crate::solve::SolveOptions;
+use crate::solve::{SolveOptions, solve};
+use crate::state::{ObjectId, State};
+use crate::validity::BlockKind;
 
 /// Motions looked at in each case.
 const MOTIONS: usize = 3;
@@ -51,10 +52,10 @@ fn the_validity<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
                 let instance = Arc::new(instance);
                 check_validity(m, &**validity, &instance, &here, &subjects.validity_claims, number)?;
                 seen += 1;
-                counted.count(&counted.tried);
+                Tally::count(&counted.tried);
                 // What comes behind a blocked motion is never asked.
                 if validity.free_prefix(m, &instance, &here).blame.is_some() {
-                    counted.count(&counted.hit);
+                    Tally::count(&counted.hit);
                     break;
                 }
                 here = next;
@@ -62,7 +63,8 @@ fn the_validity<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
         }
         Ok(())
     };
-    let once = move |_: &World<D>, row: &mut Row| {
+    let once = move |world: &World<D>, row: &mut Row| {
+        held(world)?;
         let [tried, blocked] = [&tally.tried, &tally.hit].map(Tally::get);
         match (tried, blocked) {
             (0, _) => row.warn("no motion was proposed: only its laws about states could be looked at"),
@@ -74,6 +76,60 @@ fn the_validity<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
     };
     let cases = world.subjects.effort.cases;
     Some(Plan::new("validity", validity::LAWS.len(), cases, case).finally(once))
+}
+
+/// How many places are looked at, and how many of those in something fixed are tried, for what is held.
+const PLACES: u64 = 4096;
+const TRIED: usize = 96;
+
+/// An object is brought by the primitives, from states in other modes than that of the start, to places where at rest it would
+/// be in something fixed: the end of such a motion is not free.
+fn held<D: Domain>(world: &World<D>) -> Result<(), Broken> {
+    let (m, subjects) = (&*world.m, &world.subjects);
+    let Some(validity) = &subjects.validity else { return Ok(()) };
+    let none = D::Contacts::default();
+    let others: Vec<_> = world.pool.iter().filter(|state| state.mode != subjects.start.mode).collect();
+    let mut tried = 0;
+    for i in 0..PLACES {
+        let mut rng = rng_of_case(world.seed.wrapping_add(i));
+        let Some(from) = others.get(rng.random_range(0..others.len().max(1))) else { return Ok(()) };
+        let id = ObjectId::new(rng.random_range(0..m.objects().len().max(1)));
+        let aim = elsewhere(m, &subjects.start, &mut rng);
+        let Some(place) = aim.object(id) else { return Ok(()) };
+        let mut resting = subjects.start.clone();
+        resting.objects.iter_mut().skip(id.index()).take(1).for_each(|slot| slot.clone_from(place));
+        entering("check");
+        let Err(blame) = validity.check(m, &resting, &none) else { continue };
+        if blame.kind != BlockKind::ObjectFixed {
+            continue;
+        }
+        let to = PartialState::anywhere(m).with_object(id, place.clone());
+        for primitive in subjects.primitives.iter() {
+            entering("useful");
+            if !primitive.useful(m, from, &to) {
+                continue;
+            }
+            tried += 1;
+            let draws = stream(world.seed, 25, i, Purpose::Extend);
+            let found = drawing("propagate", draws, |rng| primitive.propagate(m, from, &to, rng))?;
+            let mut here = (*from).clone();
+            for instance in found.into_iter().flatten() {
+                let end = instance.at(m, 1.0, &here);
+                let arrives = end.object(id) == Some(place) && here.object(id) != Some(place);
+                // Let go there it is at rest, and other rules look at it as well.
+                let during = State { mode: instance.at(m, 0.5, &here).mode, ..end.clone() };
+                if arrives && during.mode == from.mode && validity.check(m, &during, &instance.contacts).is_ok() {
+                    let broken = Broken::new(validity::HELD, format!("free: {during:?}"), format!("at rest: {blame}"));
+                    return Err(broken.of(format_args!("{}, instance {:?}", primitive.name(), instance.label)));
+                }
+                here = end;
+            }
+        }
+        if tried >= TRIED {
+            break;
+        }
+    }
+    Ok(())
 }
 
 fn the_oracle<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
@@ -89,18 +145,6 @@ fn the_oracle<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
         check_by_oracle(&*world.m, &**validity, &|m: &D, state: &_| free(m, state), &states, number)
     };
     Some(Plan::new("validity by oracle", 4, world.subjects.effort.cases / 8 + 1, case))
-}
-
-fn default_strategy<D: Domain>() -> Option<Strategy<D>> {
-    Some(Strategy {
-        sampler: Box::new(GoalBiased::new(RandomSubset, 0.2).ok()?),
-        distance: Box::new(GreedyVisit),
-        extend: ExtendOptions::default(),
-        reroute: None,
-        try_penalty_m: 0.0,
-        shorten: crate::shorten::ShortenOptions::default(),
-        improve: None,
-    })
 }
 
 fn the_planner<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
@@ -119,6 +163,19 @@ fn the_planner<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
         let options = SolveOptions { seed: number, budget, restart_iterations: restart, threads: 1 };
         check_planner(problem, &strategy, &options)
     };
+    let once = |world: &World<D>, row: &mut Row| {
+        let strategy = world.subjects.strategy.clone().or_else(|| default_strategy().map(Arc::new));
+        let (Some(Ok(problem)), Some(strategy)) = (world.problem(), strategy) else { return Ok(()) };
+        let iterations = Some(GROWTH * world.subjects.effort.iterations);
+        let budget = Budget { iterations, ..Budget::default() };
+        let options = SolveOptions { seed: world.seed, budget, restart_iterations: None, threads: 1 };
+        let outcome = solve(&problem, &strategy, &options, &mut Heart::of_this_thread());
+        if let (None, Some(refusal)) = (&outcome.solution, &outcome.last_refusal) {
+            row.warn(format!("the verifier refused every plan that was found, the last one because {refusal}"));
+        }
+        Ok(())
+    };
     let laws = planner::LAWS.len() + verifier::LAWS.len();
-    Some(Plan::new("planner and verifier", laws, (world.subjects.effort.cases / 32).max(1), case))
+    let cases = (world.subjects.effort.cases / 32).max(1);
+    Some(Plan::new("planner and verifier", laws, cases, case).finally(once))
 }

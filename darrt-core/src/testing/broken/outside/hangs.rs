@@ -87,8 +87,20 @@ fn sampler(draw: fn(&Bench, &mut dyn Rng) -> crate::partial::PartialState<Bench>
     check_sampler(&Bench::default(), &Dice(draw), &Reach::new(robot_at([3.5, 0.0])), seed())
 }
 
+fn case(
+    name: &'static str,
+    wrong: &'static str,
+    broken: fn() -> Result<(), Broken>,
+    honest: fn() -> Result<(), Broken>,
+) -> Case {
+    Case { name, wrong, law: RETURNS, broken, honest }
+}
+
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, wrong, broken, honest| Case { name, wrong, law: RETURNS, broken, honest };
+    [of_actors(), of_measures()].concat()
+}
+
+fn of_actors() -> Vec<Case> {
     vec![
         case(
             "useful without end",
@@ -140,6 +152,11 @@ pub(super) fn cases() -> Vec<Case> {
             },
             || wait_for(|| validity(Rule::default())),
         ),
+    ]
+}
+
+fn of_measures() -> Vec<Case> {
+    vec![
         case(
             "bisects for ever",
             "an interpolation that waits until the ends meet",

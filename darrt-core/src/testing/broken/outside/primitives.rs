@@ -116,7 +116,7 @@ fn ends() -> Vec<Case> {
                     end.objects[1][0] = (end.objects[1][0] + metres).clamp(0.0, 4.0);
                     let motion = Waypoints::new(vec![touching.clone(), end], &[metres.abs() + 1e-12], Tag::default());
                     push.moves = push.moves.with(ComponentId::Object(ObjectId::new(1)));
-                    push.motion = motion.map_or_else(|| unreachable!("two states"), |motion| Box::new(motion));
+                    push.motion = motion.map_or_else(|| unreachable!("two states"), Box::new);
                 })
             })
         }),
@@ -212,7 +212,7 @@ fn answers() -> Vec<Case> {
                 useful: |m, from, to| {
                     let target = to.robot_overlay(m, &from.robot);
                     let metres = m.robot.distance(&from.robot, &target);
-                    metres.partial_cmp(&0.0).map_or_else(|| unreachable!("a distance"), |order| order.is_gt())
+                    metres.partial_cmp(&0.0).map_or_else(|| unreachable!("a distance"), std::cmp::Ordering::is_gt)
                         && (GO.useful)(m, from, to)
                 },
                 ..GO

@@ -9,7 +9,7 @@ use super::super::bench::{Bench, Check, Rule, TOUCH_M, blame, check as honest_ch
 use super::super::motions::{drag, go, random_state};
 use super::super::{Case, inputs, seed};
 use super::CASES;
-use crate::laws::validity::{BLAME_KIND, EXEMPTS, LAX, NAN, ORACLE_PREFIX, PURE, STRICT};
+use crate::laws::validity::{BLAME_KIND, EXEMPTS, LAX, NAN, ORACLE_PREFIX, PURE, STRICT, WITHOUT_ROBOT};
 use crate::laws::{Broken, ValidityClaims, check_by_oracle, check_validity};
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 use crate::validity::{BlockKind, FreePrefix, Validity};
@@ -58,7 +58,7 @@ fn case(name: &'static str, wrong: &'static str, law: &'static str, broken: fn()
 }
 
 pub(super) fn cases() -> Vec<Case> {
-    [from_outside(), kinds(), memory(), oracles()].concat()
+    [from_outside(), kinds(), alone(), memory(), oracles()].concat()
 }
 
 /// The honest rule without its bounds.
@@ -134,6 +134,66 @@ fn kinds() -> Vec<Case> {
         case("objects among themselves", "the robot's collisions are put down to objects", BLAME_KIND, || {
             check(rule(called(BlockKind::ObjectObject)))
         }),
+    ]
+}
+
+/// A rule with another rule for the objects alone.
+struct Split(fn(&Bench, &State<Bench>) -> Result<(), crate::validity::Blame>);
+
+impl Validity<Bench> for Split {
+    fn check(&self, m: &Bench, state: &State<Bench>, contacts: &ComponentSet) -> Result<(), crate::validity::Blame> {
+        Rule::default().check(m, state, contacts)
+    }
+
+    fn without_robot(&self) -> Option<Arc<dyn Validity<Bench>>> {
+        Some(Arc::new(Alone(self.0)))
+    }
+
+    fn free_prefix(&self, m: &Bench, instance: &crate::motion::Instance<Bench>, from: &State<Bench>) -> FreePrefix {
+        Rule::default().free_prefix(m, instance, from)
+    }
+}
+
+struct Alone(fn(&Bench, &State<Bench>) -> Result<(), crate::validity::Blame>);
+
+impl Validity<Bench> for Alone {
+    fn check(&self, m: &Bench, state: &State<Bench>, _: &ComponentSet) -> Result<(), crate::validity::Blame> {
+        (self.0)(m, state)
+    }
+
+    fn free_prefix(&self, _: &Bench, _: &crate::motion::Instance<Bench>, _: &State<Bench>) -> FreePrefix {
+        FreePrefix::FREE
+    }
+}
+
+fn split(alone: fn(&Bench, &State<Bench>) -> Result<(), crate::validity::Blame>) -> Result<(), Broken> {
+    let m = Bench::default();
+    let claims = ValidityClaims { same_names: false, ..ValidityClaims::default() };
+    (0..CASES / 8).try_for_each(|i| {
+        let mut rng = inputs(i);
+        let from = random_state(&mut rng);
+        let moved = Arc::new(go(&m, &from, sample(&mut rng)));
+        check_validity(&m, &Split(alone), &moved, &from, &claims, seed() + i)
+    })
+}
+
+fn alone() -> Vec<Case> {
+    let case = |name, wrong, law, broken| Case { name, wrong, law, broken, honest: || split(|_, _| Ok(())) };
+    vec![
+        case("a ghost in the way", "the rules without the robot still know the robot", WITHOUT_ROBOT, || {
+            split(|_, state| honest_check((1.0, 1.5), state, ComponentSet::EMPTY))
+        }),
+        case(
+            "stricter alone",
+            "the rules for the objects alone keep a distance that the others do not",
+            WITHOUT_ROBOT,
+            || {
+                split(|_, state| {
+                    let near = (state.objects[0][0] - state.objects[1][0]).abs() < 0.5;
+                    if near { Err(blame(BlockKind::ObjectObject, "cart 0", state.objects[0][0])) } else { Ok(()) }
+                })
+            },
+        ),
     ]
 }
 

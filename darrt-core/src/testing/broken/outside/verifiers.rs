@@ -126,12 +126,18 @@ fn honest(court: &Court<'_>) -> bool {
     Replay::new(RULE(), 1e-3).verify(court.m, court.start, court.goal, court.plan).is_ok()
 }
 
+fn case(name: &'static str, wrong: &'static str, law: &'static str, broken: fn() -> Result<(), Broken>) -> Case {
+    Case { name, wrong, law, broken, honest: || check(&Replay::new(RULE(), 1e-3)) }
+}
+
 pub(super) fn cases() -> Vec<Case> {
+    [refusing(), steady()].concat()
+}
+
+fn refusing() -> Vec<Case> {
     thread_local! {
         static CALLS: Cell<u32> = const { Cell::new(0) };
     }
-    let case =
-        |name, wrong, law, broken| Case { name, wrong, law, broken, honest: || check(&Replay::new(RULE(), 1e-3)) };
     vec![
         case("accepts everything", "the judge was never filled in", REFUSES, || judged(|_| true)),
         case("judges the end", "looks whether the goal is reached, and not how", REFUSES, || {
@@ -214,6 +220,14 @@ pub(super) fn cases() -> Vec<Case> {
                 court.plan.steps().len() == 4 || honest(court)
             })
         }),
+    ]
+}
+
+fn steady() -> Vec<Case> {
+    thread_local! {
+        static CALLS: Cell<u32> = const { Cell::new(0) };
+    }
+    vec![
         case("another mood", "accepts a plan, and refuses it when asked again", STEADY, || {
             CALLS.set(0);
             judged(|court| {

@@ -7,9 +7,13 @@ use crate::goal::Region;
 use crate::laws::everything::Effort;
 use crate::laws::planner::PROBLEM;
 use crate::laws::primitive::FEASIBLE;
-use crate::laws::{Broken, Subjects, check_everything};
+use crate::laws::validity::HELD;
+use crate::laws::{Broken, Subjects, ValidityClaims, check_everything};
+use crate::motion::Instance;
 use crate::primitive::{Infeasible, Primitive};
-use crate::state::State;
+use crate::state::{ComponentSet, State};
+use crate::testing::puck::{Clearance, Obstacle, Outline, PuckWorld, Setup};
+use crate::validity::{Blame, BlockKind, FreePrefix, Validity};
 use crate::verify::Replay;
 
 const GO: Act = Act {
@@ -30,8 +34,53 @@ fn check(start: State<Bench>, act: Act) -> Result<(), Broken> {
         .primitives(primitives)
         .validity(rule)
         .verifier(Replay::new(rule, 1e-2))
-        .effort(Effort { cases: 4, calls: 2048, iterations: 20, apart_ms: 0, seed: seed(), ..Effort::default() });
+        .effort(Effort { cases: 4, calls: 8192, iterations: 20, apart_ms: 0, seed: seed(), ..Effort::default() });
     match check_everything(Bench::default(), subjects) {
+        Ok(_) => Ok(()),
+        Err(report) => report.broken().next().map_or(Ok(()), |broken| Err(broken.clone())),
+    }
+}
+
+type Check = fn(&Clearance, &PuckWorld, &State<PuckWorld>, &ComponentSet) -> Result<(), Blame>;
+
+/// A clearance that checks states in its own way.
+struct Hands(Check, Clearance);
+
+impl Validity<PuckWorld> for Hands {
+    fn check(&self, m: &PuckWorld, state: &State<PuckWorld>, contacts: &ComponentSet) -> Result<(), Blame> {
+        (self.0)(&self.1, m, state, contacts)
+    }
+
+    fn free_prefix(&self, m: &PuckWorld, instance: &Instance<PuckWorld>, from: &State<PuckWorld>) -> FreePrefix {
+        let steps = (instance.motion.length() / 2e-3).ceil().clamp(1.0, 1e5);
+        let (mut free, mut i) = (0.0, 0.0);
+        while i <= steps {
+            let t = i / steps;
+            if let Err(blame) = self.check(m, &instance.at(m, t, from), &instance.contacts) {
+                return FreePrefix::blocked(free, blame);
+            }
+            free = t;
+            i += 1.0;
+        }
+        FreePrefix::FREE
+    }
+}
+
+/// Everything of a room with a large pillar, and a puck that is picked and carried.
+fn puck(rule: Check) -> Result<(), Broken> {
+    let problem = Setup::new([4.0, 3.0], 0.15)
+        .robot_at([0.6, 0.6])
+        .graspable_puck("red", 0.12, [1.0, 1.0])
+        .pillar("pillar", [2.0, 1.5], 0.4)
+        .puck_goal(0, [3.5, 2.5])
+        .problem()
+        .map_err(|error| Broken::new("testing.bench: the honest twin can be built", error.to_string(), "a problem"))?;
+    let pillar = Outline::Disc { centre: [2.0, 1.5], radius_m: 0.4 };
+    let clearance = Clearance::new(vec![Obstacle { name: "pillar".into(), outline: pillar }]);
+    let effort = Effort { cases: 2, calls: 16, iterations: 0, apart_ms: 0, seed: seed(), ..Effort::default() };
+    let claims = ValidityClaims { same_names: false, ..ValidityClaims::default() };
+    let subjects = Subjects::of(&problem).validity(Hands(rule, clearance)).validity_claims(claims);
+    match check_everything(problem.shared_domain(), subjects.effort(effort)) {
         Ok(_) => Ok(()),
         Err(report) => report.broken().next().map_or(Ok(()), |broken| Err(broken.clone())),
     }
@@ -43,6 +92,19 @@ pub(super) fn cases() -> Vec<Case> {
         case("finds nothing, ever", "looks useful, and every way is infeasible", FEASIBLE, || {
             check(state([0.5, 0.1]), Act { propagate: |_, _, _, _| Err(Infeasible::Unreachable), ..GO })
         }),
+        Case {
+            name: "held is fine",
+            wrong: "what is in the hand is not looked at any more",
+            law: HELD,
+            broken: || {
+                // Only the robot is looked at, and whether there is anything in its hand.
+                puck(|inner, m, state, contacts| match inner.check(m, state, contacts) {
+                    Err(blame) if blame.kind == BlockKind::ObjectFixed && state.mode.held().is_some() => Ok(()),
+                    found => found,
+                })
+            },
+            honest: || puck(Clearance::check),
+        },
         case("starts in the wall", "a start that no rule of its own accepts", PROBLEM, || {
             let mut start = state([1.2, 0.1]);
             start.objects[cart().index()] = [3.0, 0.0];

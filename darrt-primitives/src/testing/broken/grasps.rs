@@ -1,0 +1,174 @@
+//! Broken grasps.
+
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use darrt_core::laws::Broken;
+use darrt_geom::body::Body;
+use darrt_geom::shape::Shape;
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use rand::{Rng, RngExt};
+
+use super::{Case, unusable};
+use crate::grasp::footprint::Footprint;
+use crate::grasp::overhead::OverheadGrasps;
+use crate::grasp::{Grasp, GraspFamily, Grip};
+use crate::laws::check_grasps;
+use crate::laws::grasp::{APPROACH, BETWEEN, GAPS, GRID, OVERHANG, POSE, REACH, SEEDED, VARIED};
+use crate::length_range::LengthRange;
+use crate::testing::gantry::{MAX_GAP_M, TIP_BEYOND_TOOL_M, TIP_HALF_WIDTH_M};
+
+/// Honest grasps of a tin, and what is changed about them.
+struct Family {
+    honest: OverheadGrasps,
+    /// What becomes of a grasp that was drawn.
+    change: fn(Grasp, &mut dyn Rng) -> Grasp,
+    /// What becomes of the grid.
+    grid: fn(Vec<Grasp>) -> Vec<Grasp>,
+    needs_overhang: bool,
+    /// The bound, if another than the honest one.
+    reach_m: Option<f64>,
+}
+
+impl GraspFamily for Family {
+    fn sample(&self, rng: &mut dyn Rng) -> Grasp {
+        let grasp = self.honest.sample(rng);
+        (self.change)(grasp, rng)
+    }
+
+    fn grid(&self) -> Vec<Grasp> {
+        (self.grid)(self.honest.grid())
+    }
+
+    fn needs_overhang(&self) -> bool {
+        self.needs_overhang
+    }
+
+    fn tool_reach_m(&self) -> f64 {
+        self.reach_m.unwrap_or_else(|| self.honest.tool_reach_m())
+    }
+}
+
+/// The gripper of the gantry.
+struct Plates;
+
+impl crate::manipulator::Hand for Plates {
+    fn max_gap_m(&self) -> f64 {
+        MAX_GAP_M
+    }
+
+    fn tip_beyond_tool_m(&self, _: f64) -> f64 {
+        TIP_BEYOND_TOOL_M
+    }
+
+    fn tip_half_width_m(&self) -> f64 {
+        TIP_HALF_WIDTH_M
+    }
+}
+
+fn check(change: impl FnOnce(&mut Family)) -> Result<(), Broken> {
+    let (radius, height) = (0.04, 0.08);
+    let grip = Grip { open_gap: 0.095, tip_ahead: TIP_BEYOND_TOOL_M, ..Grip::default() };
+    let honest = OverheadGrasps::new(Footprint::Disc { radius }, height, 0.03, grip).map_err(unusable)?;
+    let shape = Shape::cylinder(radius, 0.5 * height).map_err(unusable)?;
+    let body = Body::single("tin", shape).map_err(unusable)?;
+    let mut family =
+        Family { honest, change: |grasp, _| grasp, grid: |grid| grid, needs_overhang: false, reach_m: None };
+    change(&mut family);
+    check_grasps(&family, &body, &Plates, darrt_core::testing::broken::seed())
+}
+
+fn drawn(change: fn(Grasp, &mut dyn Rng) -> Grasp) -> Result<(), Broken> {
+    check(|family| family.change = change)
+}
+
+fn moved(grasp: Grasp, by: Isometry3<f64>) -> Grasp {
+    Grasp { object_from_tool: grasp.object_from_tool * by, ..grasp }
+}
+
+pub(super) fn cases() -> Vec<Case> {
+    static CALLS: AtomicU32 = AtomicU32::new(0);
+    let case = |name, wrong, law, broken| Case { name, wrong, law, broken, honest: || check(|_| {}) };
+    vec![
+        case("an empty grid", "a selection by a filter that nothing passes", GRID, || {
+            check(|family| family.grid = |_| Vec::new())
+        }),
+        case("a grid in another order", "the grid comes from a set without order", GRID, || {
+            check(|family| {
+                family.grid = |mut grid| {
+                    let by = CALLS.fetch_add(1, Relaxed) as usize % grid.len().max(1);
+                    grid.rotate_left(by);
+                    grid
+                };
+            })
+        }),
+        case("opens to close", "the two gaps are exchanged", GAPS, || {
+            drawn(|grasp, _| Grasp { open_gap_m: grasp.closed_gap_m, closed_gap_m: grasp.open_gap_m, ..grasp })
+        }),
+        case("opens wider than it can", "the gap of another gripper", GAPS, || {
+            drawn(|grasp, _| Grasp { open_gap_m: 0.12, ..grasp })
+        }),
+        case("closes on nothing", "a thickness that was left at 0", GAPS, || {
+            drawn(|grasp, _| Grasp { closed_gap_m: 0.0, ..grasp })
+        }),
+        case("one in a hundred is no number", "normalises a direction of no length now and then", POSE, || {
+            drawn(|grasp, rng| {
+                let is_bad = rng.random_bool(0.02);
+                if is_bad { moved(grasp, Isometry3::translation(f64::NAN, 0.0, 0.0)) } else { grasp }
+            })
+        }),
+        case("a quaternion that is none", "a rotation composed without being normalised", POSE, || {
+            drawn(|grasp, _| {
+                let q = UnitQuaternion::new_unchecked(Quaternion::from(grasp.object_from_tool.rotation.coords * 1.01));
+                let object_from_tool = Isometry3::from_parts(grasp.object_from_tool.translation, q);
+                Grasp { object_from_tool, ..grasp }
+            })
+        }),
+        case("no approach", "the length of the approach was left at 0", POSE, || {
+            drawn(|grasp, _| Grasp { approach_m: LengthRange::new(0.0, 0.0).unwrap_or(grasp.approach_m), ..grasp })
+        }),
+        case("farther than it says", "the offset of the tool is not in the bound", REACH, || {
+            drawn(|grasp, _| moved(grasp, Isometry3::translation(-0.1, 0.0, 0.0)))
+        }),
+        case("comes from inside", "the hand points away from the object", APPROACH, || {
+            drawn(|grasp, _| {
+                let back = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::PI);
+                moved(grasp, Isometry3::from_parts(Translation3::identity(), back))
+            })
+        }),
+        Case {
+            name: "grasps beside the tin",
+            wrong: "the middle of the tin is measured from its rim",
+            law: BETWEEN,
+            broken: || {
+                check(|family| {
+                    family.change = |grasp, _| moved(grasp, Isometry3::translation(-0.08, 0.0, 0.0));
+                    family.reach_m = Some(f64::INFINITY);
+                })
+            },
+            honest: || check(|_| {}),
+        },
+        case("needs no overhang, it says not", "a flag copied from the grasps of rims", OVERHANG, || {
+            check(|family| family.needs_overhang = true)
+        }),
+        case("a grasp of its own", "the azimuth comes from a counter", SEEDED, || {
+            drawn(|grasp, _| {
+                let turn = f64::from(CALLS.fetch_add(1, Relaxed) % 11) * 1e-3;
+                moved(grasp, Isometry3::rotation(Vector3::x() * turn))
+            })
+        }),
+        case("always the first", "draws, and then takes the first of the grid", VARIED, || {
+            check(|family| {
+                family.change = |_, _| {
+                    let down = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::FRAC_PI_2);
+                    Grasp {
+                        object_from_tool: Isometry3::from_parts(Translation3::new(0.0, 0.0, 0.035), down),
+                        open_gap_m: 0.095,
+                        closed_gap_m: 0.08,
+                        approach_m: Grip::default().approach,
+                        kind: crate::grasp::GraspKind::Overhead { azimuth: 0.0 },
+                    }
+                };
+            })
+        }),
+    ]
+}
