@@ -78,7 +78,7 @@ fn moments() -> Vec<Case> {
                 }),
             )
         }),
-        case("spins", "the pushed tin turns for a moment", SUPPORT, || {
+        case("spins", "the pushed tin turns for a moment", RAY, || {
             for_a_moment(
                 Act::Push,
                 Box::new(|_, _, state| {
