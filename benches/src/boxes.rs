@@ -87,7 +87,7 @@ impl Boxes {
         if is_free(&straight) {
             return Some(straight);
         }
-        let around = Detour::default().reroute(m, &self.validity, 0, &straight, from, &mut stream(seed))?;
+        let around = Detour::default().reroute(m, &self.validity, 0, &straight, from, &mut stream(seed)).ok()?;
         is_free(&around).then_some(around)
     }
 }

@@ -158,7 +158,7 @@ impl<D: Domain> Extender<'_, D> {
             if free.blame.is_some()
                 && let Some(r) = reroute.filter(|r| r.is_free_to_turn(&instance))
                 && prefixes.is_worth_a_detour(r, index)
-                && let Some(around) = r.reroute(m, problem.validity(), 0, &instance, start, rng)
+                && let Ok(around) = r.reroute(m, problem.validity(), 0, &instance, start, rng)
             {
                 instance = Arc::new(around);
                 free = problem.validity().free_prefix(m, &instance, start);

@@ -10,6 +10,15 @@ use crate::motion::Instance;
 use crate::state::State;
 use crate::validity::Validity;
 
+/// Why there is no way around.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoWay {
+    /// None was found with this care; with less there may be one.
+    WithThisCare,
+    /// None was found with any care.
+    WithAnyCare,
+}
+
 /// Finds another motion between the ends of a blocked one.
 ///
 /// # Laws
@@ -20,8 +29,10 @@ pub trait Reroute<D: Domain>: Send + Sync {
     fn is_free_to_turn(&self, instance: &Instance<D>) -> bool;
 
     /// Another instance with the same ends as `instance`, which begins at `from` and is blocked with this `care`
-    /// ([`Validity::most_care`]). `None` if the instance must go as it does (a push, an approach), or if no way was found with
-    /// the effort allowed.
+    /// ([`Validity::most_care`]).
+    ///
+    /// # Errors
+    /// [`NoWay`] if the instance must go as it does (a push, an approach), or if no way was found with the effort allowed.
     fn reroute(
         &self,
         m: &D,
@@ -30,5 +41,5 @@ pub trait Reroute<D: Domain>: Send + Sync {
         instance: &Instance<D>,
         from: &State<D>,
         rng: &mut dyn Rng,
-    ) -> Option<Instance<D>>;
+    ) -> Result<Instance<D>, NoWay>;
 }

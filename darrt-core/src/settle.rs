@@ -12,6 +12,7 @@ use crate::domain::Domain;
 use crate::extend::Extender;
 use crate::motion::Instance;
 use crate::plan::Step;
+use crate::reroute::NoWay;
 use crate::state::State;
 use crate::validity::Blame;
 
@@ -69,11 +70,16 @@ pub(crate) fn settled<D: Domain>(
     }
     let turns = reroute.filter(|r| r.is_free_to_turn(&step.instance));
     let most = turns.map_or(0, |_| validity.most_care());
-    let mut care = most;
+    let (mut care, mut may_go_around) = (most, true);
     loop {
         let free = validity.free_prefix_with(care, m, &step.instance, here);
         let Some(blame) = free.blame.filter(|_| free.fraction < step.until) else { break };
-        let around = turns.and_then(|r| r.reroute(m, validity, care, &step.instance, here, rng));
+        let around = match turns.filter(|_| may_go_around) {
+            Some(r) => r.reroute(m, validity, care, &step.instance, here, rng),
+            None => Err(NoWay::WithAnyCare),
+        };
+        may_go_around = around.as_ref().err() != Some(&NoWay::WithAnyCare);
+        let around = around.ok();
         if let Some(around) = around.filter(|around| validity.free_prefix_with(care, m, around, here).blame.is_none()) {
             step.instance = Arc::new(around);
             break;

@@ -13,7 +13,7 @@ use darrt_core::motion::Instance;
 use darrt_core::observe::{Event, Observer};
 use darrt_core::partial::PartialState;
 use darrt_core::primitive::{Infeasible, Instances, Primitive};
-use darrt_core::reroute::Reroute;
+use darrt_core::reroute::{NoWay, Reroute};
 use darrt_core::state::State;
 use darrt_core::validity::{Blame, FreePrefix, Validity};
 use rand::Rng;
@@ -211,7 +211,7 @@ impl Reroute<World> for Timed<Box<dyn Reroute<World>>> {
         instance: &Instance<World>,
         from: &WorldState,
         rng: &mut dyn Rng,
-    ) -> Option<Instance<World>> {
+    ) -> Result<Instance<World>, NoWay> {
         let add = |sums: &mut Sums, spent: Duration| {
             sums.primitives.entry(instance.label).or_default().reroute_s += spent.as_secs_f64();
         };

@@ -13,6 +13,8 @@
 //! A* over a lattice of places and yaws in the signed distances of outlines, then shortcuts and pulling taut, then the exact
 //! check of every straight drive. A coarse lattice first, a finer one where it finds nothing. No random choice, no clock.
 
+use darrt_core::reroute::NoWay;
+
 use crate::manipulator::Manipulator;
 use crate::tabletop::{Tabletop, TabletopState};
 
@@ -78,19 +80,21 @@ const DOUBT_M: f64 = 1e-4;
 impl BasePath {
     /// Poses of the base from that of `from`, the first, to `to`, the last, both bit for bit; straight drives lie between
     /// them. The arm, the objects and what is held stand as in `from`, whose mode is that on the way. Both ends are
-    /// clear with this [care](darrt_core::validity::Validity::most_care), and so is the way. `None` if none is found, or
-    /// if it would be much longer than with less care.
+    /// clear with this [care](darrt_core::validity::Validity::most_care), and so is the way.
+    ///
+    /// # Errors
+    /// [`NoWay`] if none is found, or if it would be much longer than with less care.
     pub fn find<M: Manipulator>(
         &self,
         m: &Tabletop<M>,
         care: usize,
         from: &TabletopState<M>,
         to: &[f64; 3],
-    ) -> Option<Vec<[f64; 3]>> {
+    ) -> Result<Vec<[f64; 3]>, NoWay> {
         let around = m.surroundings();
         let [wanted_m, least_margin_m] = around.drive_margins_m(care);
         let plan = around.floor_plan();
-        let mut footprint = Footprint::new(m, from, plan, wanted_m);
+        let mut footprint = Footprint::new(m, from, plan, least_margin_m);
         let mut least_m = least_margin_m + SPARE_M;
         // What is exactly known to be clear may not look so from above.
         let mut is_doubtful = plan.has_gaps;
@@ -106,27 +110,42 @@ impl BasePath {
             for level in LEVELS {
                 let looks = footprint.looks() + self.looks;
                 if !is_doubtful {
-                    let Some(way) = way_along(level, ends, &mut Sight::new(&mut footprint, terms, None), looks) else {
-                        continue;
+                    let way = match way_along(level, ends, &mut Sight::new(&mut footprint, terms, None), looks) {
+                        Trial::Way(way) => way,
+                        Trial::Hope => continue,
+                        Trial::Hopeless => break,
                     };
                     if is_clear(&way, |a, b| drives.is_clear(care, a, b)) {
-                        return Some(way);
+                        return Ok(way);
                     }
                     if care > 0 {
-                        return None;
+                        return Err(NoWay::WithThisCare);
                     }
                     // Seen from above it is clear, but not in space.
                     is_doubtful = true;
                 }
                 let judge: &mut Judge<'_> = &mut |a, b| drives.is_clear(0, a, b);
-                let way = way_along(level, ends, &mut Sight::new(&mut footprint, terms, Some(judge)), looks);
-                if let Some(way) = way {
-                    return is_clear(&way, |a, b| drives.is_clear(care, a, b)).then_some(way);
+                match way_along(level, ends, &mut Sight::new(&mut footprint, terms, Some(judge)), looks) {
+                    Trial::Way(way) if is_clear(&way, |a, b| drives.is_clear(care, a, b)) => return Ok(way),
+                    Trial::Way(_) => return Err(NoWay::WithThisCare),
+                    Trial::Hope => {}
+                    Trial::Hopeless => break,
                 }
             }
-            None
+            Err(NoWay::WithAnyCare)
         })
     }
+}
+
+/// What a search along one lattice comes to.
+#[derive(Debug, Clone, PartialEq)]
+enum Trial {
+    /// The poses of a way.
+    Way(Vec<[f64; 3]>),
+    /// No way, but a finer lattice may have one.
+    Hope,
+    /// No way, nor a passage that is wide enough, or nearly.
+    Hopeless,
 }
 
 /// Are all drives of a way clear?
@@ -135,32 +154,29 @@ fn is_clear(way: &[[f64; 3]], mut judge: impl FnMut(&[f64; 3], &[f64; 3]) -> boo
 }
 
 /// A short way along a lattice, as long as not more than `looks` poses have been looked at.
-fn way_along(
-    level: Level,
-    [start, goal]: [&[f64; 3]; 2],
-    sight: &mut Sight<'_>,
-    looks: usize,
-) -> Option<Vec<[f64; 3]>> {
-    let stops = [sight.stop(start)?, sight.stop(goal)?];
+fn way_along(level: Level, [start, goal]: [&[f64; 3]; 2], sight: &mut Sight<'_>, looks: usize) -> Trial {
+    let (Some(start), Some(goal)) = (sight.stop(start), sight.stop(goal)) else { return Trial::Hopeless };
+    let stops = [start, goal];
     let step_rad = level.step_deg.to_radians();
     let lattice = lattice(level, &stops, sight.footprint);
     let [start_place, goal_place] = stops.map(|stop| lattice.nearest(&stop.at).place);
-    let bounds = Bounds::around(&lattice, sight.footprint, [start_place, goal_place], lattice.spacing_m())?;
+    let bounds = Bounds::around(&lattice, sight.footprint, [start_place, goal_place], lattice.spacing_m());
+    let Some(bounds) = bounds else { return Trial::Hopeless };
+    let narrow = sight.narrow();
     // The other way round first, for a little while: mostly it is the goal that is enclosed, if one end is.
     let back = Bounds::straight(&lattice, start_place);
-    let [start, goal] = stops;
-    let way = match Search::new(sight, &lattice, &back, step_rad, [goal, start]).run(FROM_GOAL, looks) {
-        Outcome::Enclosed => return None,
-        Outcome::Found(mut way) => {
-            way.reverse();
-            way
-        }
-        Outcome::Stopped => match Search::new(sight, &lattice, &bounds, step_rad, stops).run(usize::MAX, looks) {
-            Outcome::Found(way) => way,
-            Outcome::Enclosed | Outcome::Stopped => return None,
-        },
-    };
-    shorten::shorten(sight, &way).map(|way| way.poses())
+    let mut outcome = Search::new(sight, &lattice, &back, step_rad, [goal, start]).run(FROM_GOAL, looks);
+    if let Outcome::Found(way) = &mut outcome {
+        way.reverse();
+    }
+    if outcome == Outcome::Stopped {
+        outcome = Search::new(sight, &lattice, &bounds, step_rad, stops).run(usize::MAX, looks);
+    }
+    match outcome {
+        Outcome::Found(way) => shorten::shorten(sight, &way).map_or(Trial::Hope, |way| Trial::Way(way.poses())),
+        Outcome::Enclosed if sight.narrow() == narrow => Trial::Hopeless,
+        Outcome::Enclosed | Outcome::Stopped => Trial::Hope,
+    }
 }
 
 /// Rows in which the robot can go around all obstacles, within its bounds.

@@ -2,7 +2,7 @@
 //! [`BasePath`].
 
 use darrt_core::motion::Instance;
-use darrt_core::reroute::Reroute;
+use darrt_core::reroute::{NoWay, Reroute};
 use darrt_core::validity::Validity;
 use rand::Rng;
 
@@ -41,27 +41,28 @@ impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
         instance: &Instance<Tabletop<M>>,
         from: &TabletopState<M>,
         rng: &mut dyn Rng,
-    ) -> Option<Instance<Tabletop<M>>> {
+    ) -> Result<Instance<Tabletop<M>>, NoWay> {
         if !Reroute::<Tabletop<M>>::is_free_to_turn(self, instance) {
-            return None;
+            return Err(NoWay::WithAnyCare);
         }
         let end = instance.at(m, 1.0, from);
         let inside = instance.at(m, f64::MIN_POSITIVE, from);
         // An end that is itself too near to something cannot be left, whichever way.
-        validity.check_with(care, m, &inside, &Contacts::default()).ok()?;
-        validity.check_with(care, m, &end, &Contacts::default()).ok()?;
+        for state in [&inside, &end] {
+            validity.check_with(care, m, state, &Contacts::default()).map_err(|_| NoWay::WithThisCare)?;
+        }
         let way = match (end.robot.base == from.robot.base, end.robot.arm == from.robot.arm) {
-            (true, false) => self.arm.find(m, care, &inside, from, &end, rng)?,
+            (true, false) => self.arm.find(m, care, &inside, from, &end, rng).ok_or(NoWay::WithThisCare)?,
             (false, true) => {
                 let bases = self.base.find(m, care, &inside, &end.robot.base)?;
                 bases.into_iter().map(|base| Configuration { base, arm: from.robot.arm }).collect()
             }
-            _ => return None,
+            _ => return Err(NoWay::WithAnyCare),
         };
         let waypoints: Vec<_> = way.iter().skip(1).map(|q| Waypoint { robot: *q, pushed: 0.0 }).collect();
         let carried = inside.mode.held().map_or(Carried::Nothing, |held| Carried::Held(*held));
         let motion = ArmMotion::new(m, from, &waypoints, carried, inside.mode.clone(), inside.mode);
-        Some(Instance {
+        Ok(Instance {
             label: instance.label,
             motion: Box::new(motion),
             contacts: Contacts::default(),

@@ -78,7 +78,7 @@ fn length_m(way: &[[f64; 3]]) -> f64 {
 }
 
 fn find(m: &Table, from: &TableState, to: &[f64; 3]) -> Option<Vec<[f64; 3]>> {
-    BasePath::default().find(m, 0, from, to)
+    BasePath::default().find(m, 0, from, to).ok()
 }
 
 /// What every way must be.
@@ -144,7 +144,7 @@ fn wall_with_door(width_m: f64, yaw: f64) -> Vec<FixedBody> {
 /// The base is 0.668 m wide and keeps 5 mm to either side. Doors of every width and direction, from places and headings that have nothing to do with them.
 #[test]
 fn a_door_that_is_wide_enough_is_passed_and_one_that_is_not_is_not() {
-    for (number, width_m) in [0.74, 0.80, 0.675].into_iter().enumerate() {
+    for (number, width_m) in [0.70, 0.74, 0.80, 0.675].into_iter().enumerate() {
         for turn in 0..5_u8 {
             let yaw = 0.31 * f64::from(turn);
             let m = room(wide(0.668), &wall_with_door(width_m, yaw));

@@ -9,7 +9,7 @@ use darrt_core::observe::accounts::Bucket;
 use darrt_core::partial::PartialState;
 use darrt_core::primitive::{Infeasible, Instances, Primitive};
 use darrt_core::problem::Problem;
-use darrt_core::reroute::Reroute;
+use darrt_core::reroute::{NoWay, Reroute};
 use darrt_core::state::{ComponentId, ComponentSet, State};
 use darrt_core::validity::{Blame, BlockKind, FreePrefix, Validity};
 use rand::Rng;
@@ -104,10 +104,14 @@ impl Reroute<World> for Around {
         instance: &Instance<World>,
         from: &State<World>,
         _: &mut dyn Rng,
-    ) -> Option<Instance<World>> {
+    ) -> Result<Instance<World>, NoWay> {
         self.calls.fetch_add(1, Ordering::SeqCst);
         let there = instance.at(m, 1.0, from);
-        self.finds.then(|| Instance { label: "around", ..robot_instance(from, &there) })
+        if self.finds {
+            Ok(Instance { label: "around", ..robot_instance(from, &there) })
+        } else {
+            Err(NoWay::WithAnyCare)
+        }
     }
 }
 

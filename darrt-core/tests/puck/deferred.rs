@@ -12,7 +12,7 @@ use darrt_core::observe::Silent;
 use darrt_core::partial::PartialState;
 use darrt_core::plan::Step;
 use darrt_core::problem::Problem;
-use darrt_core::reroute::Reroute;
+use darrt_core::reroute::{NoWay, Reroute};
 use darrt_core::search::Strategy;
 use darrt_core::settle::{Unsettled, settle};
 use darrt_core::shorten::ShortenOptions;
@@ -68,12 +68,12 @@ impl Reroute<World> for Above {
         instance: &Instance<World>,
         from: &State<World>,
         _: &mut dyn Rng,
-    ) -> Option<Instance<World>> {
+    ) -> Result<Instance<World>, NoWay> {
         let end = instance.at(m, 1.0, from);
         let over = |x| State { robot: [x, 1.8], ..from.clone() };
         let stops = vec![from.clone(), over(from.robot[0]), over(end.robot[0]), end.clone()];
-        let motion = Waypoints::new(stops, &[1.5, 2.0, 1.5], from.mode.clone())?;
-        Some(Instance { motion: Box::new(motion), ..robot_instance(from, &end) })
+        let motion = Waypoints::new(stops, &[1.5, 2.0, 1.5], from.mode.clone()).ok_or(NoWay::WithAnyCare)?;
+        Ok(Instance { motion: Box::new(motion), ..robot_instance(from, &end) })
     }
 }
 
@@ -154,8 +154,9 @@ impl Reroute<World> for Finds {
         instance: &Instance<World>,
         from: &State<World>,
         _: &mut dyn Rng,
-    ) -> Option<Instance<World>> {
-        self.0[care].map(|label| Instance { label, ..robot_instance(from, &instance.at(m, 1.0, from)) })
+    ) -> Result<Instance<World>, NoWay> {
+        let found = self.0[care].map(|label| Instance { label, ..robot_instance(from, &instance.at(m, 1.0, from)) });
+        found.ok_or(NoWay::WithThisCare)
     }
 }
 

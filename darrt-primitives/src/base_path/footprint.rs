@@ -45,6 +45,13 @@ pub(super) struct Near {
     pub(super) slope: Vector3<f64>,
 }
 
+impl Near {
+    /// The slope with the yaw in metres that a point at `reach_m` travels.
+    pub(super) fn row(&self, reach_m: f64) -> Vector3<f64> {
+        Vector3::new(self.slope.x, self.slope.y, self.slope.z / reach_m)
+    }
+}
+
 /// The robot among the obstacles. Asking for a distance allocates nothing.
 #[derive(Debug, Clone)]
 pub(super) struct Footprint {

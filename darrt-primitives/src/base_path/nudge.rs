@@ -21,6 +21,9 @@ const DAMPING: f64 = 1e-3;
 /// Cosine between two directions from which they count as opposed.
 const OPPOSED: f64 = -0.3;
 
+/// A passage in whose direction less than this share is driving is none.
+const LENGTHWISE: f64 = 0.7;
+
 /// How far a pose may be pushed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Room {
@@ -37,9 +40,9 @@ pub(super) struct Nudge {
 }
 
 impl Nudge {
-    /// A pose between two obstacles, not farther from `q` than `room`, with at least `least_m` to them, and its distance from
-    /// them. `wanted_m` is what it is pushed to, where there is room. `None` if none was found, or if `q` is beside a single
-    /// obstacle: there one that is clear is a step away.
+    /// A pose between two obstacles, not farther from `q` than `room`, and its distance from them, which is not exact where
+    /// it is less than `least_m`. `wanted_m` is what it is pushed to, where there is room. `None` if `q` is beside a
+    /// single obstacle: there one that is clear is a step away.
     pub(super) fn between(
         &mut self,
         footprint: &mut Footprint,
@@ -54,7 +57,26 @@ impl Nudge {
         }
         let at = self.pushed(footprint, q, room, wanted_m)?;
         let distance_m = footprint.distance_m(&at, wanted_m, least_m);
-        (distance_m >= least_m).then_some((at, distance_m))
+        Some((at, distance_m))
+    }
+
+    /// The direction of the passage in which `q` lies with something nearer than `wanted_m` on two sides: how x, y and yaw
+    /// change by metre, in either sense. `None` if it lies in none.
+    pub(super) fn along(&mut self, footprint: &mut Footprint, q: &[f64; 3], wanted_m: f64) -> Option<Vector3<f64>> {
+        footprint.near(q, wanted_m, &mut self.near);
+        if !self.is_between() {
+            return None;
+        }
+        let reach_m = footprint.reach_m().max(f64::MIN_POSITIVE);
+        let normal = self.near.iter().fold(Matrix3::zeros(), |sum, near| {
+            let row = near.row(reach_m);
+            sum + row * row.transpose()
+        });
+        // Along it no distance changes.
+        let eigen = normal.symmetric_eigen();
+        let along = eigen.eigenvectors.column(eigen.eigenvalues.imin());
+        let shift = along.xy().norm();
+        (shift > LENGTHWISE).then(|| Vector3::new(along.x, along.y, along.z / reach_m) / shift)
     }
 
     /// `q` pushed towards a distance of `wanted_m` from everything, not farther away than `room`.
@@ -95,10 +117,10 @@ impl Nudge {
     fn push(&self, wanted_m: f64, reach_m: f64) -> Option<Vector3<f64>> {
         let mut normal = Matrix3::identity() * DAMPING;
         let mut right = Vector3::zeros();
-        for Near { distance_m, slope } in &self.near {
-            let lack = wanted_m - distance_m;
+        for near in &self.near {
+            let lack = wanted_m - near.distance_m;
             if lack > 0.0 {
-                let row = Vector3::new(slope.x, slope.y, slope.z / reach_m);
+                let row = near.row(reach_m);
                 normal += row * row.transpose();
                 right += row * lack;
             }

@@ -9,6 +9,7 @@
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::ops::ControlFlow;
 
 use darrt_core::space::so2::turn;
 
@@ -25,6 +26,9 @@ const WITHIN: f64 = 0.6;
 
 /// Poses of the lattice from here on are connected with the goal, in rows and in steps of the yaw.
 const NEAR_ROWS: f64 = 1.6;
+
+/// How far outside a narrow passage it is entered and left, in rows.
+const EXITS: [f64; 2] = [1.0, 2.0];
 
 /// How a search ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +55,8 @@ struct Node {
     stop: Stop,
     /// Is `stop.clear_m` what a look has shown, not what follows from a neighbour?
     is_seen: bool,
+    /// Has it been pushed into the middle of a passage?
+    is_pushed: bool,
     is_closed: bool,
     /// `None` for the goal.
     cell: Option<Cell>,
@@ -158,8 +164,19 @@ impl<'a, 's> Search<'a, 's> {
             reason = "fewer nodes than cells, of which there are fewer than 2^32"
         )]
         let number = self.nodes.len() as u32;
+        let is_pushed = cell.is_some_and(|cell| self.lattice.pose(cell) != stop.at);
         let parent = number;
-        let node = Node { stop, is_seen, is_closed: false, cell, cost_m: f64::INFINITY, bound_m, parent, via: None };
+        let node = Node {
+            stop,
+            is_seen,
+            is_pushed,
+            is_closed: false,
+            cell,
+            cost_m: f64::INFINITY,
+            bound_m,
+            parent,
+            via: None,
+        };
         self.nodes.push(node);
         if let Some(slot) = cell.and_then(|cell| self.known.get_mut(self.lattice.number(cell))) {
             *slot = Known::Node(number);
@@ -189,13 +206,16 @@ impl<'a, 's> Search<'a, 's> {
             *slot = here;
         }
         for step in AROUND {
-            if let Some(place) = self.lattice.step(cell.place, step) {
-                self.reach(number, &here, Cell { place, ..cell });
+            let Some(place) = self.lattice.step(cell.place, step) else { continue };
+            let is_blocked = self.reach(number, &here, Cell { place, ..cell }).is_break();
+            if is_blocked && let Some(place) = self.lattice.step(place, step) {
+                // The mouth of a narrow passage: no pose beside it is pushed into it.
+                self.reach_passage(number, &here, Cell { place, ..cell });
             }
         }
         for yaw in self.lattice.turned(cell.yaw) {
             if yaw != cell.yaw {
-                self.reach(number, &here, Cell { yaw, ..cell });
+                let _ = self.reach(number, &here, Cell { yaw, ..cell });
             }
         }
         let rows = (0..2).map(|i| (self.goal[i] - here.stop.at[i]).abs() / self.lattice.spacing_m());
@@ -205,8 +225,8 @@ impl<'a, 's> Search<'a, 's> {
         }
     }
 
-    /// Tries the step from a node to a cell.
-    fn reach(&mut self, from: u32, here: &Node, cell: Cell) {
+    /// Tries the step from a node to a cell; `Break` if the cell is blocked.
+    fn reach(&mut self, from: u32, here: &Node, cell: Cell) -> ControlFlow<()> {
         let number = self.lattice.number(cell);
         let to = match self.known.get(number) {
             Some(Known::Node(to)) => *to,
@@ -217,12 +237,32 @@ impl<'a, 's> Search<'a, 's> {
                     if let Some(slot) = self.known.get_mut(number) {
                         *slot = Known::Blocked;
                     }
-                    return;
+                    return ControlFlow::Break(());
                 }
             }
-            _ => return,
+            _ => return ControlFlow::Break(()),
         };
         self.connect(from, here, to);
+        ControlFlow::Continue(())
+    }
+
+    /// Tries the way from a node to a cell behind a blocked one, if it is in a narrow passage.
+    fn reach_passage(&mut self, from: u32, here: &Node, cell: Cell) {
+        match self.known.get(self.lattice.number(cell)) {
+            Some(Known::Node(to)) => {
+                let to = *to;
+                if self.node(to).is_some_and(|there| there.is_pushed) {
+                    self.connect(from, here, to);
+                }
+            }
+            Some(Known::Unseen) => {
+                if let Some(stop) = self.sight.stop_beside(&self.lattice.pose(cell), self.room) {
+                    let to = self.add(stop, true, Some(cell));
+                    self.connect(from, here, to);
+                }
+            }
+            _ => {}
+        }
     }
 
     /// Where to stop in a cell beside a node, and whether that was looked at.
@@ -249,14 +289,37 @@ impl<'a, 's> Search<'a, 's> {
         if let Some(cost_m) = self.sight.cost_m(&here.stop, &there.stop) {
             self.arrive(to, from, here.cost_m + cost_m, None);
         } else if here.stop.clear_m.min(there.stop.clear_m) < self.sight.terms.wanted_m {
-            // In a narrow passage two poses in its middle may have no straight drive between them.
-            let middle = self.sight.between(&here.stop.at, &there.stop.at, 0.5);
-            let Some(via) = self.sight.stop_beside(&middle, self.room) else { return };
-            let first = self.sight.cost_m(&here.stop, &via);
-            if let Some(cost_m) = first.and_then(|first| Some(first + self.sight.cost_m(&via, &there.stop)?)) {
-                self.arrive(to, from, here.cost_m + cost_m, Some(via.at));
+            // In a narrow passage.
+            if let Some((cost_m, via)) = self.by_way(&here.stop, &there.stop) {
+                self.arrive(to, from, here.cost_m + cost_m, Some(via));
             }
         }
+    }
+
+    /// What the way from one stop of a narrow passage to another costs by a pose between, and that.
+    fn by_way(&mut self, here: &Stop, there: &Stop) -> Option<(f64, [f64; 3])> {
+        // Two poses in its middle may have no straight drive between them.
+        let middle = self.sight.between(&here.at, &there.at, 0.5);
+        let middle = self.sight.stop_beside(&middle, self.room);
+        if let Some(found) = middle.and_then(|via| self.by(here, &via, there)) {
+            return Some(found);
+        }
+        // It is entered and left straight ahead.
+        for steps in EXITS {
+            let way_m = steps * self.lattice.spacing_m();
+            for (inside, outside) in [(there, here), (here, there)] {
+                let via = self.sight.stop_along(inside, &outside.at, way_m);
+                if let Some(found) = via.and_then(|via| self.by(here, &via, there)) {
+                    return Some(found);
+                }
+            }
+        }
+        None
+    }
+
+    fn by(&mut self, here: &Stop, via: &Stop, there: &Stop) -> Option<(f64, [f64; 3])> {
+        let cost_m = self.sight.cost_m(here, via)? + self.sight.cost_m(via, there)?;
+        Some((cost_m, via.at))
     }
 
     fn way_to_goal(&self) -> Vec<[f64; 3]> {

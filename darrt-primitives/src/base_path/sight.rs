@@ -1,13 +1,16 @@
 //! Straight drives among the obstacles: are they clear, and what do they cost?
 
 use darrt_core::space::ComponentSpace;
-use darrt_core::space::so2::turn;
+use darrt_core::space::so2::{turn, wrap};
 
 use super::footprint::Footprint;
 use super::nudge::{Nudge, Room};
 
 /// Distances beyond this are not told apart, metres: from a pose that is so clear nobody looks at those around it.
 pub(super) const FAR_M: f64 = 0.3;
+
+/// A passage that is too narrow by no more than this to both sides may only seem so, metres.
+const NARROW_M: f64 = 0.01;
 
 /// How much of a drive is nearer than wanted is known to this length of travel, metres.
 const TIGHT_M: f64 = 0.05;
@@ -44,13 +47,15 @@ pub(super) struct Sight<'a> {
     /// What the footprint calls clear is asked about again, if there is somebody to ask.
     pub(super) judge: Option<&'a mut Judge<'a>>,
     nudge: Nudge,
+    /// How many passages have been found that are too narrow by little.
+    narrow: usize,
     /// Parts of a drive that have still to be looked at.
     parts: Vec<(Stop, Stop)>,
 }
 
 impl<'a> Sight<'a> {
     pub(super) fn new(footprint: &'a mut Footprint, terms: Terms, judge: Option<&'a mut Judge<'a>>) -> Self {
-        Self { footprint, terms, judge, nudge: Nudge::default(), parts: Vec::new() }
+        Self { footprint, terms, judge, nudge: Nudge::default(), narrow: 0, parts: Vec::new() }
     }
 
     /// The pose with its distance from the obstacles; `None` if that is too little.
@@ -68,7 +73,25 @@ impl<'a> Sight<'a> {
     pub(super) fn stop_beside(&mut self, at: &[f64; 3], room: Room) -> Option<Stop> {
         let Terms { least_m, wanted_m, .. } = self.terms;
         let (at, clear_m) = self.nudge.between(self.footprint, at, room, (least_m, wanted_m))?;
+        if clear_m < least_m {
+            self.narrow += usize::from(clear_m > least_m - NARROW_M);
+            return None;
+        }
         Some(Stop { at, clear_m })
+    }
+
+    /// How many passages have been found that are too narrow by little: a finer lattice may pass them.
+    pub(super) fn narrow(&self) -> usize {
+        self.narrow
+    }
+
+    /// A pose this far from `stop` along the passage in which it lies, to the side on which `towards` is. `None` if it lies
+    /// in none.
+    pub(super) fn stop_along(&mut self, stop: &Stop, towards: &[f64; 3], way_m: f64) -> Option<Stop> {
+        let along = self.nudge.along(self.footprint, &stop.at, self.terms.wanted_m)?;
+        let [x, y, yaw] = stop.at;
+        let side_m = way_m.copysign((towards[0] - x) * along.x + (towards[1] - y) * along.y);
+        self.stop(&[x + side_m * along.x, y + side_m * along.y, wrap(yaw + side_m * along.z)])
     }
 
     /// A pose beside a stop that is nearer than wanted, not farther away than it lacks, where there is more room.
