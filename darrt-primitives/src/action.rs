@@ -7,7 +7,7 @@
 //! | follow a straight line of the hand | [`mod@line`] |
 //! | retreat from what the hand stands at | [`retreat`] |
 //! | go to a configuration, alone or with an object in the hand | [`travel`] |
-//! | hold the arm so that the base can drive | `fold` |
+//! | hold the arm so that the base can drive | `fold`, `width` |
 //! | find a base and an arm configuration for a hand pose | [`stance`] |
 //! | know how far the hand must travel to push or grasp | [`approach`] |
 //! | push an object | [`push`] |
@@ -29,6 +29,7 @@ pub mod retreat;
 pub mod stance;
 pub mod transfer;
 pub mod travel;
+mod width;
 
 /// Instances in the making: each new one starts where the last ended.
 #[derive(Debug)]

@@ -10,6 +10,7 @@ use rand::{Rng, RngExt};
 
 use super::Chain;
 use super::stance::Probe;
+use super::width::Widths;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Held};
 use crate::object_space::upright;
@@ -24,6 +25,10 @@ const OUT_COSTS: f64 = 4.0;
 const CHANCE: f64 = 0.5;
 /// How many ways to carry an object are drawn.
 const DRAWS: usize = 16;
+/// How many more are drawn where the robot would be too wide for a passage with all of them.
+const NARROW_DRAWS: usize = 96;
+/// So far to both sides of straight ahead an object is carried through a passage, radians.
+const AHEAD_RAD: f64 = 0.4;
 /// Where the hand is when an object is carried: least and largest distance from the middle of the base, metres.
 const CARRIED_M: [f64; 2] = [0.35, 0.75];
 /// How much higher or lower than now an object is carried, metres.
@@ -42,7 +47,8 @@ pub(super) enum Order<J> {
     Through(J),
 }
 
-/// The cheapest order found in which nothing is in the way of the robot and what it holds at either end of the drive.
+/// The cheapest order found in which nothing is in the way of the robot and what it holds at either end of the drive; first
+/// those in which the robot is not too wide for a passage.
 /// Costs are metres of travel, with a part left to chance.
 pub(super) fn order<M: Manipulator>(
     m: &Tabletop<M>,
@@ -54,15 +60,22 @@ pub(super) fn order<M: Manipulator>(
     let held = from.mode.held().copied();
     let mut choices = vec![(Order::BaseFirst, from.robot.arm), (Order::ArmFirst, target.arm)];
     choices.extend(m.settings().postures.iter().map(|posture| (Order::Through(*posture), *posture)));
+    let mut widths = Widths::new(m, from, target);
     if let Some(held) = &held {
-        choices.extend((0..DRAWS).filter_map(|_| carrying(m, from, held, rng)).map(|arm| (Order::Through(arm), arm)));
+        let anywhere = std::f64::consts::PI;
+        let drawn = (0..DRAWS).filter_map(|_| carrying(m, from, held, anywhere, rng));
+        choices.extend(drawn.map(|arm| (Order::Through(arm), arm)));
+        if choices.iter().all(|(_, arm)| widths.is_wide(arm)) {
+            let mut drawn = (0..NARROW_DRAWS).filter_map(|_| carrying(m, from, held, AHEAD_RAD, rng));
+            choices.extend(drawn.find(|arm| !widths.is_wide(arm)).map(|arm| (Order::Through(arm), arm)));
+        }
     }
     let costs = choices.into_iter().map(|(order, arm)| {
         let cost = cost_m(m, from, target, &arm) * rng.random_range(1.0..1.0 + CHANCE);
-        (cost, order, arm)
+        (widths.is_wide(&arm), cost, order, arm)
     });
     let mut costs: Vec<_> = costs.collect();
-    costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    costs.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut probe = Probe::new(m, from, from.mode.clone());
     let mut is_fit = |arm: &M::Joints, care| {
         [from.robot.base, target.base]
@@ -73,8 +86,8 @@ pub(super) fn order<M: Manipulator>(
             })
     };
     let cares = [m.surroundings().most_care(), 0];
-    let found = cares.iter().find_map(|care| costs.iter().find(|(_, _, arm)| is_fit(arm, *care))).or(costs.first());
-    found.map_or(Order::BaseFirst, |(_, order, _)| *order)
+    let found = cares.iter().find_map(|care| costs.iter().find(|(.., arm)| is_fit(arm, *care))).or(costs.first());
+    found.map_or(Order::BaseFirst, |(_, _, order, _)| *order)
 }
 
 /// What it costs to drive with the arm at `arm`: the arm's travel to there and from there on, and the drive, dearer with the
@@ -100,17 +113,18 @@ fn out_m<M: Manipulator>(m: &Tabletop<M>, q: &Configuration<M::Joints>) -> f64 {
     (tool.x - x).hypot(tool.y - y)
 }
 
-/// An arm configuration, drawn at random, that carries what is held upright and near the robot; `None` if the draw is out of
-/// reach.
+/// An arm configuration, drawn at random, that carries what is held upright and near the robot, not farther than `aside_rad`
+/// from straight ahead; `None` if the draw is out of reach.
 fn carrying<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
     held: &Held,
+    aside_rad: f64,
     rng: &mut dyn Rng,
 ) -> Option<M::Joints> {
     let here = from.object(held.object)?;
-    let [x, y, _] = from.robot.base;
-    let bearing = rng.random_range(-std::f64::consts::PI..std::f64::consts::PI);
+    let [x, y, heading] = from.robot.base;
+    let bearing = heading + rng.random_range(-aside_rad..aside_rad);
     let distance_m = rng.random_range(CARRIED_M[0]..CARRIED_M[1]);
     let height_m = here.translation.z + rng.random_range(-CARRIED_RISE_M..CARRIED_RISE_M);
     let yaw = rng.random_range(-std::f64::consts::PI..std::f64::consts::PI);

@@ -3,6 +3,8 @@
 use darrt_geom::scene::FixedBody;
 use darrt_geom::shape::Shape;
 
+use nalgebra::Vector2;
+
 use super::outline::Outline;
 use super::section::Placed;
 
@@ -22,10 +24,24 @@ impl Obstacle {
     }
 }
 
+/// Where two obstacles are nearest to each other, with nothing between them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Gap {
+    /// Half way between them.
+    pub(crate) middle: Vector2<f64>,
+    /// Metres.
+    pub(crate) width_m: f64,
+}
+
+/// Wider gaps than this are passed by every robot, metres.
+const WIDE_M: f64 = 2.0;
+
 /// The fixed bodies of a scene.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FloorPlan {
     pub(crate) obstacles: Vec<Obstacle>,
+    /// Where a robot could be too wide.
+    pub(crate) gaps: Vec<Gap>,
     /// Some bodies are not in here: meshes, which are surfaces, and slanting half spaces.
     pub(crate) has_gaps: bool,
 }
@@ -50,7 +66,29 @@ impl FloorPlan {
                 }
             }
         }
+        plan.find_gaps();
         plan
+    }
+
+    fn find_gaps(&mut self) {
+        for (i, a) in self.obstacles.iter().enumerate() {
+            for (j, b) in self.obstacles.iter().enumerate().skip(i + 1) {
+                let is_level = a.z_m[0] < b.z_m[1] && b.z_m[0] < a.z_m[1];
+                let beside_m = (a.outline.centre() - b.outline.centre()).norm();
+                if !is_level || beside_m > WIDE_M + a.outline.reach_m() + b.outline.reach_m() {
+                    continue;
+                }
+                let contact = a.outline.contact(&b.outline, WIDE_M);
+                let (width_m, middle) = (contact.distance_m, a.outline.beside(&contact));
+                let others = self.obstacles.iter().enumerate().filter(|(k, _)| *k != i && *k != j);
+                let is_open = width_m > 0.0
+                    && width_m < WIDE_M
+                    && others.map(|(_, other)| other.outline.beyond_m(&middle)).all(|beyond_m| beyond_m > 0.0);
+                if is_open {
+                    self.gaps.push(Gap { middle, width_m });
+                }
+            }
+        }
     }
 }
 
@@ -73,6 +111,21 @@ mod tests {
         assert_eq!(plan.obstacles[0].z_m, [0.0, 1.0]);
         let ramp = fixed(Shape::half_space(Unit::new_normalize(Vector3::new(0.1, 0.0, 1.0))).unwrap());
         assert!(FloorPlan::new(&[solid, ramp]).has_gaps);
+    }
+
+    #[test]
+    fn a_gap_is_where_nothing_is_between() {
+        let pillar = |x: f64| FixedBody {
+            world_from_body: Isometry3::translation(x, 0.0, 0.5),
+            ..fixed(Shape::cylinder(0.1, 0.5).unwrap())
+        };
+        let plan = FloorPlan::new(&[pillar(0.0), pillar(1.0)]);
+        assert_eq!(plan.gaps.len(), 1);
+        assert!((plan.gaps[0].width_m - 0.8).abs() < 1e-9 && (plan.gaps[0].middle.x - 0.5).abs() < 1e-9);
+        // The outer two have the third one between them.
+        let plan = FloorPlan::new(&[pillar(0.0), pillar(1.0), pillar(0.5)]);
+        assert_eq!(plan.gaps.len(), 2);
+        assert!(FloorPlan::new(&[pillar(0.0), pillar(5.0)]).gaps.is_empty());
     }
 
     #[test]

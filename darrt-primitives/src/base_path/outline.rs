@@ -137,6 +137,11 @@ impl Outline {
         is_plump && other.corners.iter().all(|corner| self.beyond_edges(corner) + other.radius_m <= 0.0)
     }
 
+    /// Half way from this outline to the one that it is apart from with this contact.
+    pub(crate) fn beside(&self, contact: &Contact) -> Vector2<f64> {
+        contact.at - contact.away * (self.radius_m + 0.5 * contact.distance_m)
+    }
+
     /// Where this outline and `other` are nearest. What is at least `enough` metres away may be nearer than it says.
     pub(crate) fn contact(&self, other: &Self, enough: f64) -> Contact {
         let radii = self.radius_m + other.radius_m;
