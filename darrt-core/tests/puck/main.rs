@@ -28,6 +28,7 @@ mod refusals;
 mod replay;
 #[cfg(test)]
 mod shortened;
+#[cfg(test)]
 mod smoothed;
 #[cfg(test)]
 mod solved;
