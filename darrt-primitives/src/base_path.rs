@@ -2,13 +2,13 @@
 //!
 //! | question | file |
 //! |---|---|
-//! | what does a solid look like from above, at these heights? | [`section`], [`outline`] |
-//! | where are the fixed bodies? | [`floor_plan`] |
-//! | how far is the robot from the obstacles? | [`footprint`] |
-//! | is a straight drive clear, and what does it cost? | [`sight`], exactly [`drive`] |
-//! | which poses are tried, and in what order? | [`lattice`], [`bound`], [`search`] |
-//! | how is the middle of a narrow door found? | [`nudge`] |
-//! | how does a way become short? | [`shorten`] |
+//! | what does a solid look like from above, at these heights? | `section`, `outline` |
+//! | where are the fixed bodies? | `floor_plan` |
+//! | how far is the robot from the obstacles? | `footprint` |
+//! | is a straight drive clear, and what does it cost? | `sight`, exactly `drive` |
+//! | which poses are tried, and in what order? | `lattice`, `bound`, `search` |
+//! | how is the middle of a narrow door found? | `nudge` |
+//! | how does a way become short? | `shorten` |
 //!
 //! A* over a lattice of places and yaws in the signed distances of outlines, then shortcuts and pulling taut, then the exact
 //! check of every straight drive. A coarse lattice first, a finer one where it finds nothing. No random choice, no clock.
