@@ -4,9 +4,9 @@
 use darrt_core::domain::Domain;
 use darrt_core::goal::Goal;
 use darrt_core::plan::{Plan, Step};
+use darrt_core::space::ComponentSpace;
 use darrt_core::state::{ComponentId, ObjectId};
 use darrt_core::verify::Refusal;
-use darrt_primitives::manipulator::Manipulator;
 
 use crate::world::{World, WorldState};
 
@@ -74,17 +74,15 @@ fn follows(end: &WorldState, here: &WorldState) -> bool {
     is_same_mode && end.robot == here.robot && end.objects == here.objects
 }
 
-/// How far the base, the hand or any object is from where it was, metres; NaN if objects are missing.
+/// How far any point of the robot, or any object, is from where it was, metres; NaN if objects are missing.
 fn travel_m(m: &World, a: &WorldState, b: &WorldState) -> f64 {
     if a.objects.len() != b.objects.len() {
         return f64::NAN;
     }
-    let base = (a.robot.base[0] - b.robot.base[0]).hypot(a.robot.base[1] - b.robot.base[1]);
-    let tool = |state: &WorldState| m.manipulator().world_from_tool(&state.robot).translation.vector;
     let objects = a.objects.iter().zip(&b.objects).map(|(p, q)| (p.translation.vector - q.translation.vector).norm());
     // A maximum that keeps NaN.
     let larger = |most: f64, metres: f64| if most >= metres || most.is_nan() { most } else { metres };
-    objects.fold(larger(base, (tool(a) - tool(b)).norm()), larger)
+    objects.fold(m.robot().distance(&a.robot, &b.robot), larger)
 }
 
 fn stray(m: &World, step: &Step<World>, before: &WorldState, here: &WorldState) -> Option<String> {
