@@ -16,12 +16,12 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterio
 use darrt_benches::arm::{TORSO_M, configurations, poses, right_arm};
 use darrt_benches::room::Room;
 use darrt_benches::stream;
+use darrt_pr2::WorldState;
 use darrt_pr2::arm::many_rolls::RollSolutions;
 use darrt_pr2::arm::{Arm, ArmConfiguration, Side, Solutions};
 use darrt_pr2::forward::{ArmChain, ArmPoses, Frame, world_from_base};
 use darrt_pr2::model::{Pr2Model, WholeBody};
 use darrt_pr2::reachability::Reachability;
-use darrt_pr2::world::WorldState;
 use darrt_primitives::kinematics::lanes::{LANES, Row};
 use darrt_primitives::kinematics::{BatchForward, PoseLanes};
 use darrt_primitives::manipulator::Manipulator as _;

@@ -13,8 +13,8 @@
 use std::process::ExitCode;
 
 use darrt_benches::drives::{Drive, drives};
-use darrt_pr2::plan_file::PlanFile;
 use darrt_primitives::testing::yardstick::Yardstick;
+use darrt_task::plan_file::PlanFile;
 
 /// A drive may be so many times as long as the shortest.
 const MOST: f64 = 1.3;

@@ -6,14 +6,16 @@ use darrt_core::reroute::Reroute as _;
 use darrt_core::space::ComponentSpace as _;
 use darrt_core::state::ComponentSet;
 use darrt_core::validity::Validity as _;
-use darrt_pr2::problem_file::{Obstacle, ShapeSpec, builtin};
-use darrt_pr2::world::{Built, World, WorldState, build};
-use darrt_primitives::action::label::ARM_TRANSIT;
+use darrt_pr2::problems::builtin;
+use darrt_pr2::{World, WorldState};
 use darrt_primitives::arm_motion::{ArmMotion, Carried, Waypoint};
 use darrt_primitives::detour::Detour;
 use darrt_primitives::manipulator::{Configuration, Manipulator as _};
 use darrt_primitives::mode::Contacts;
+use darrt_primitives::primitive::ARM_TRANSIT;
 use darrt_primitives::validity::SceneValidity;
+use darrt_task::problem_file::{Obstacle, ShapeSpec};
+use darrt_task::world::{Built, build};
 use rand::RngExt as _;
 
 use crate::stream;
@@ -50,7 +52,7 @@ impl Boxes {
                 quaternion: None,
             });
         }
-        let Built { world, start, .. } = build(&file).unwrap();
+        let Built { world, start, .. } = build(&darrt_pr2::registry(), &file).unwrap();
         let validity = SceneValidity::new(&world);
         let mut boxes = Self { world, validity, queries: Vec::new() };
         boxes.queries = (0..count).map(|_| (boxes.free(&start, rng), boxes.free(&start, rng))).collect();
@@ -76,7 +78,7 @@ impl Boxes {
         let target = Waypoint { robot: Configuration { base: from.robot.base, arm: to.robot.arm }, pushed: 0.0 };
         let motion = ArmMotion::new(m, from, &[target], Carried::Nothing, mode.clone(), mode.clone());
         let straight = Instance {
-            label: ARM_TRANSIT,
+            primitive: ARM_TRANSIT,
             motion: Box::new(motion),
             contacts: Contacts::default(),
             moves: ComponentSet::ROBOT,

@@ -6,12 +6,13 @@ use darrt_core::space::so2::turn;
 use darrt_core::state::{ObjectId, State};
 use darrt_pr2::arm::{ArmConfiguration, JOINT_NAMES, Side};
 use darrt_pr2::gripper;
-use darrt_pr2::plan_file::{PlanFile, Step, Waypoint};
-use darrt_pr2::problem_file::ArmSide;
-use darrt_pr2::world::{Built, World, WorldState, build};
+use darrt_pr2::{World, WorldState};
 use darrt_primitives::manipulator::Configuration;
 use darrt_primitives::mode::{Held, Mode, SurfaceId};
 use darrt_primitives::testing::yardstick::Yardstick;
+use darrt_task::plan_file::{PlanFile, Step, Waypoint};
+use darrt_task::problem_file::ArmSide;
+use darrt_task::world::{Built, build};
 use nalgebra::Isometry3;
 
 /// A step in which the base drives.
@@ -46,7 +47,7 @@ const ROUNDING_M: f64 = 1e-6;
 /// # Errors
 /// In words, if the problem of the plan cannot be built or a waypoint lacks a joint or an object.
 pub fn drives(plan: &PlanFile, yardstick: &Yardstick) -> Result<Vec<Drive>, String> {
-    let Built { world, .. } = build(&plan.problem).map_err(|error| error.to_string())?;
+    let Built { world, .. } = build(&darrt_pr2::registry(), &plan.problem).map_err(|error| error.to_string())?;
     let side = match plan.problem.robot.arm {
         ArmSide::Right => Side::Right,
         ArmSide::Left => Side::Left,

@@ -13,12 +13,15 @@ use darrt_core::space::ComponentSpace as _;
 use darrt_core::state::State;
 use darrt_geom::oracle::PosedBody;
 use darrt_geom::{Body, Scene};
-use darrt_pr2::planning::{Prepared, prepare, strategy};
-use darrt_pr2::problem_file::{ProblemFile, builtin};
-use darrt_pr2::world::{Built, World, WorldState, build};
+use darrt_pr2::problems::builtin;
+use darrt_pr2::robot::Pr2;
+use darrt_pr2::{World, WorldState};
 use darrt_primitives::arm_space::ARM;
 use darrt_primitives::manipulator::Manipulator as _;
 use darrt_primitives::validity::SceneValidity;
+use darrt_task::planning::{PlanRequest, Prepared, prepare, strategy};
+use darrt_task::problem_file::ProblemFile;
+use darrt_task::world::{Built, build};
 use nalgebra::Isometry3;
 
 use crate::stream;
@@ -43,7 +46,7 @@ pub struct Room {
 impl Room {
     /// The room of Plate3.
     pub fn new() -> Self {
-        let Built { world, start, scene, .. } = build(&plate3()).unwrap();
+        let Built { world, start, scene, .. } = build(&darrt_pr2::registry(), &plate3()).unwrap();
         let validity = SceneValidity::new(&world);
         Self { world, scene, validity, start }
     }
@@ -103,10 +106,10 @@ impl Default for Room {
 }
 
 /// Plate3 ready for planning, with the strategy of its file.
-pub fn prepared() -> (Prepared, Strategy<World>) {
+pub fn prepared() -> (Prepared<Pr2>, Strategy<World>) {
     let file = plate3();
-    let strategy = strategy(&file.sampling, file.sampling.sampler, file.sampling.distance).unwrap();
-    (prepare(&file).unwrap(), strategy)
+    let strategy = strategy(&darrt_pr2::registry(), &PlanRequest::new(file.clone(), 0)).unwrap();
+    (prepare(&darrt_pr2::registry(), &file).unwrap(), strategy)
 }
 
 /// Metres that the farthest point may travel between two configurations of a motion: the verifier's resolution.
@@ -143,7 +146,8 @@ pub fn held_motions(count: usize) -> Vec<HeldMotion> {
         let rng = &mut stream(index);
         let to = PartialState::anywhere(m).with_robot_groups(m.robot().sample(rng), ARM);
         let path = path(m, problem.primitives(), from, &to, 1, rng);
-        let instance = Arc::clone(&path.instances.first().filter(|(_, i)| i.label == "Arm-Rigid-Transfer")?.1);
+        let instance =
+            Arc::clone(&path.instances.first().filter(|(_, i)| i.primitive.name() == "Arm-Rigid-Transfer")?.1);
         let free = problem.validity().free_prefix(m, &instance, from).fraction;
         let configurations = (instance.motion.length() * free / RESOLUTION_M).ceil();
         (configurations > 1.0).then(|| HeldMotion { from: from.clone(), instance, configurations })
@@ -152,7 +156,7 @@ pub fn held_motions(count: usize) -> Vec<HeldMotion> {
 }
 
 /// States of a tree that has grown for `iterations`, at most `count`, spread over the tree.
-pub fn grown(prepared: &Prepared, strategy: &Strategy<World>, iterations: u64, count: usize) -> Vec<WorldState> {
+pub fn grown(prepared: &Prepared<Pr2>, strategy: &Strategy<World>, iterations: u64, count: usize) -> Vec<WorldState> {
     let mut darrt = Darrt::new(&prepared.problem, strategy, 2012, 0, usize::MAX);
     for _ in 0..iterations {
         darrt.step();

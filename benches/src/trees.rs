@@ -5,6 +5,7 @@ use std::sync::Arc;
 use darrt_core::domain::Domain;
 use darrt_core::motion::{Instance, Straight};
 use darrt_core::partial::PartialState;
+use darrt_core::primitive::PrimitiveId;
 use darrt_core::problem::Problem;
 use darrt_core::search::Strategy;
 use darrt_core::space::ComponentSpace as _;
@@ -17,7 +18,7 @@ use crate::stream;
 /// anything in common.
 pub fn random<D: Domain>(m: &D, start: &State<D>, count: u64) -> Tree<D> {
     let instance = Arc::new(Instance {
-        label: "random",
+        primitive: PrimitiveId::new(10, "random"),
         motion: Box::new(Straight::new(start.clone(), start.robot.clone(), 0.0)),
         contacts: D::Contacts::default(),
         moves: ComponentSet::ROBOT,

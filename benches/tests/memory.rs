@@ -11,7 +11,7 @@ use darrt_core::budget::Interrupt;
 use darrt_core::extend::Extender;
 use darrt_core::search::Darrt;
 use darrt_core::state::State;
-use darrt_pr2::world::World;
+use darrt_pr2::World;
 
 /// At most half a kilobyte for each node.
 const BYTES_PER_NODE: u64 = 512;
@@ -48,7 +48,7 @@ fn a_million_nodes_with_their_motions_fit_into_a_gigabyte() {
     instances.dedup_by(|a, b| Arc::ptr_eq(a, b));
     let mut kinds: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
     for instance in &instances {
-        let kind = kinds.entry(instance.label).or_default();
+        let kind = kinds.entry(instance.primitive).or_default();
         *kind = (kind.0 + 1, kind.1 + instance.motion.knots().len());
     }
     println!("instances and their waypoints, by kind: {kinds:?}");
@@ -78,7 +78,7 @@ fn a_motion_is_evaluated_and_checked_without_allocating_per_state() {
                 let ts = (0..count).map(|i| f64::from(i) / f64::from(count));
                 measure(|| ts.for_each(|t| r.instance.motion.at_into(m, t, &mut state))).count_total
             };
-            assert_eq!((evaluate(10), evaluate(1000)), (0, 0), "{}", r.instance.label);
+            assert_eq!((evaluate(10), evaluate(1000)), (0, 0), "{}", r.instance.primitive);
             let whole = measure(|| drop(problem.validity().free_prefix(m, &r.instance, &from)));
             lengths_m.push((r.instance.motion.length(), whole.count_total));
             from = r.state;

@@ -8,7 +8,7 @@ use darrt_core::laws::domain::{POINT, REACH_AT_LEAST};
 use darrt_core::laws::space::{SHADOW, SHADOW_ALIKE};
 use darrt_core::laws::{SpaceClaims, check_domain, check_nearest};
 use darrt_core::tree::Tree;
-use darrt_pr2::world::World;
+use darrt_pr2::World;
 
 fn tree() -> Tree<World> {
     let (prepared, _) = prepared();

@@ -19,8 +19,8 @@ use rand::Rng;
 struct Pull;
 
 impl Primitive<PuckWorld> for Pull {
-    fn name(&self) -> &'static str {
-        "Pull"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(8, "Pull")
     }
 
     fn useful(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> bool {
@@ -51,7 +51,7 @@ impl Primitive<PuckWorld> for Pull {
         let mode = touching.mode.clone();
         let motion = Waypoints::new(vec![touching, end], &[way], mode).ok_or(Infeasible::NoProgress)?;
         let pull = Instance {
-            label: "Pull",
+            primitive: PrimitiveId::new(8, "Pull"),
             motion: Box::new(motion),
             contacts: ComponentSet::EMPTY.with(ComponentId::Object(id)),
             moves: ComponentSet::ROBOT.with(ComponentId::Object(id)),
@@ -77,8 +77,8 @@ fn main() -> Result<(), Error> {
         let names: Vec<_> = problem.primitives().iter().map(|p| p.name()).collect();
         println!("with {}: {} after {} iterations", names.join(", "), outcome.stop, outcome.iterations);
         if let Some(solution) = outcome.solution {
-            let labels: Vec<_> = solution.plan().steps().iter().map(|s| s.instance.label).collect();
-            println!("  {}", labels.join(", "));
+            let names: Vec<_> = solution.plan().steps().iter().map(|s| s.instance.primitive.name()).collect();
+            println!("  {}", names.join(", "));
         }
     }
     Ok(())

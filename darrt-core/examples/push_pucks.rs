@@ -33,10 +33,10 @@ fn print_plan(m: &PuckWorld, outcome: &Outcome<PuckWorld>) {
     println!("{} steps, {:.2} m of travel:", plan.steps().len(), plan.length());
     for (i, step) in plan.steps().iter().enumerate() {
         let (Some(from), Some(to)) = (plan.at(m, i, 0.0), plan.at(m, i, 1.0)) else { continue };
-        let label = step.instance.label;
+        let primitive = step.instance.primitive;
         let puck = step.instance.object.and_then(|id| m.puck(id)).map_or("", |p| &p.name);
         let ([x, y], [u, v]) = (from.robot, to.robot);
-        println!("{:3}. {label:8} {puck:6} robot ({x:.2}, {y:.2}) -> ({u:.2}, {v:.2})", i + 1);
+        println!("{:3}. {primitive:8} {puck:6} robot ({x:.2}, {y:.2}) -> ({u:.2}, {v:.2})", i + 1);
     }
 }
 

@@ -156,7 +156,7 @@ impl<D: Domain> Extender<'_, D> {
             }
             let mut free = prefixes.of(index);
             if free.blame.is_some()
-                && let Some(r) = reroute.filter(|r| r.is_free_to_turn(&instance))
+                && let Some(r) = reroute.filter(|r| r.is_free_to_turn(problem.domain(), &instance))
                 && prefixes.is_worth_a_detour(r, index)
                 && let Ok(around) = r.reroute(m, problem.validity(), 0, &instance, start, rng)
             {
@@ -230,7 +230,7 @@ impl<D: Domain> Prefixes<'_, D> {
         let m = self.problem.domain();
         let rest = self.e.instances.iter().zip(self.e.states.iter().skip(1)).enumerate().skip(index);
         let moves_object = |instance: &Instance<D>| !instance.moves.is_subset_of(ComponentSet::ROBOT);
-        let is_bound = |instance: &Instance<D>| !reroute.is_free_to_turn(instance);
+        let is_bound = |instance: &Instance<D>| !reroute.is_free_to_turn(m, instance);
         rest.clone().any(|(_, ((_, instance), _))| moves_object(instance))
             && rest
                 .clone()

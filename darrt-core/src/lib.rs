@@ -57,7 +57,7 @@ pub mod prelude {
     pub use crate::goal::Goal;
     pub use crate::motion::{Instance, Motion};
     pub use crate::partial::PartialState;
-    pub use crate::primitive::{Infeasible, Instances, Primitive};
+    pub use crate::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
     pub use crate::space::{ComponentSpace, GroupSet};
     pub use crate::state::{ComponentId, ComponentSet, ObjectId, State};
     pub use crate::validity::{Blame, BlockKind, FreePrefix, Validity};

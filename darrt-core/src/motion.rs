@@ -3,6 +3,7 @@
 use std::fmt::{self, Debug};
 
 use crate::domain::Domain;
+use crate::primitive::PrimitiveId;
 use crate::state::{ComponentSet, ObjectId, State};
 
 pub mod reversed;
@@ -39,8 +40,8 @@ pub trait Motion<D: Domain>: Send + Sync + Debug {
 
 /// A primitive instance: a primitive with a specific start and displacement (paper section 3).
 pub struct Instance<D: Domain> {
-    /// Name of the kind of motion, for people.
-    pub label: &'static str,
+    /// The primitive that it is an instance of; one `propagate` may return instances of several.
+    pub primitive: PrimitiveId,
     /// The motion.
     pub motion: Box<dyn Motion<D>>,
     /// What may touch during this instance, and no longer.
@@ -66,7 +67,7 @@ impl<D: Domain> Instance<D> {
 impl<D: Domain> Debug for Instance<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Instance")
-            .field("label", &self.label)
+            .field("primitive", &self.primitive)
             .field("motion", &self.motion)
             .field("contacts", &self.contacts)
             .field("moves", &self.moves)

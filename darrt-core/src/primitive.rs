@@ -1,5 +1,7 @@
 //! The actions A: what a robot can do, as `useful` and `propagate` (paper section 4.1).
 
+use std::fmt;
+
 use rand::Rng;
 
 use crate::domain::Domain;
@@ -10,6 +12,78 @@ use crate::validity::Blame;
 
 /// The instances that one `propagate` returns, in order of execution.
 pub type Instances<D> = Vec<Instance<D>>;
+
+/// What a primitive is known by: an index into the set of primitives that a program knows, and a name for people. Two ids
+/// are the same if their indices are, whatever the names.
+///
+/// # Example
+/// ```
+/// use darrt_core::primitive::PrimitiveId;
+///
+/// const PUSH: PrimitiveId = PrimitiveId::new(7, "Push");
+/// assert_eq!(PUSH, PrimitiveId::new(7, "Schieben"));
+/// assert_eq!(PUSH.to_string(), "Push");
+/// ```
+#[derive(Clone, Copy)]
+pub struct PrimitiveId {
+    index: u16,
+    name: &'static str,
+}
+
+impl PrimitiveId {
+    /// The primitive with this index.
+    pub const fn new(index: u16, name: &'static str) -> Self {
+        Self { index, name }
+    }
+
+    /// Its place in the set.
+    pub const fn index(self) -> usize {
+        self.index as usize
+    }
+
+    /// Its name, for people.
+    pub const fn name(self) -> &'static str {
+        self.name
+    }
+}
+
+impl PartialEq for PrimitiveId {
+    fn eq(&self, other: &Self) -> bool {
+        self.index == other.index
+    }
+}
+
+impl Eq for PrimitiveId {}
+
+impl PartialOrd for PrimitiveId {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for PrimitiveId {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.index.cmp(&other.index)
+    }
+}
+
+impl std::hash::Hash for PrimitiveId {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.index.hash(state);
+    }
+}
+
+impl fmt::Debug for PrimitiveId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name)
+    }
+}
+
+impl fmt::Display for PrimitiveId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name)
+    }
+}
 
 /// Why a primitive that looked useful cannot be propagated: an ordinary outcome, counted, not an error.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +131,7 @@ pub enum Infeasible {
 ///
 /// struct Transit;
 /// impl<D: Domain> Primitive<D> for Transit {
-///     fn name(&self) -> &'static str { "Transit" }
+///     fn id(&self) -> PrimitiveId { PrimitiveId::new(0, "Transit") }
 ///     fn useful(&self, m: &D, from: &State<D>, to: &PartialState<D>) -> bool {
 ///         to.are_objects_met(m, from) && !to.is_robot_met(m, from)
 ///     }
@@ -67,7 +141,7 @@ pub enum Infeasible {
 ///         let target = to.robot_overlay(m, &from.robot);
 ///         let length = m.robot().distance(&from.robot, &target);
 ///         Ok(vec![Instance {
-///             label: "Transit",
+///             primitive: self.id(),
 ///             motion: Box::new(Straight::new(from.clone(), target, length)),
 ///             contacts: D::Contacts::default(),
 ///             moves: ComponentSet::ROBOT,
@@ -78,8 +152,13 @@ pub enum Infeasible {
 /// }
 /// ```
 pub trait Primitive<D: Domain>: Send + Sync {
-    /// Its name, for people and for the counts.
-    fn name(&self) -> &'static str;
+    /// What it is known by; no two primitives of a problem have the same one.
+    fn id(&self) -> PrimitiveId;
+
+    /// Its name, for people.
+    fn name(&self) -> &'static str {
+        self.id().name()
+    }
 
     /// Would propagating `from` towards `to` end nearer to `to`? Cheap: no inverse kinematics.
     fn useful(&self, m: &D, from: &State<D>, to: &PartialState<D>) -> bool;

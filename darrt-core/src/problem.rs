@@ -95,7 +95,7 @@ impl<D: Domain> Problem<D> {
             return Err(Error::NoPrimitives);
         }
         for (i, a) in primitives.iter().enumerate() {
-            if primitives.iter().take(i).any(|b| a.name() == b.name()) {
+            if primitives.iter().take(i).any(|b| a.id() == b.id()) {
                 return Err(Error::DuplicatePrimitive(a.name()));
             }
         }

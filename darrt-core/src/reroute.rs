@@ -26,7 +26,7 @@ pub enum NoWay {
 /// nothing more. Pure but for `rng`.
 pub trait Reroute<D: Domain>: Send + Sync {
     /// May this instance go any way between its ends? A transit may; a push, an approach or a pick may not.
-    fn is_free_to_turn(&self, instance: &Instance<D>) -> bool;
+    fn is_free_to_turn(&self, m: &D, instance: &Instance<D>) -> bool;
 
     /// Another instance with the same ends as `instance`, which begins at `from` and is blocked with this `care`
     /// ([`Validity::most_care`]).

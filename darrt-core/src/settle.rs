@@ -68,7 +68,7 @@ pub(crate) fn settled<D: Domain>(
     if interrupt.stop() == Some(Stop::Cancelled) {
         return Err(Unsettled::Cancelled);
     }
-    let turns = reroute.filter(|r| r.is_free_to_turn(&step.instance));
+    let turns = reroute.filter(|r| r.is_free_to_turn(m, &step.instance));
     let most = turns.map_or(0, |_| validity.most_care());
     let (mut care, mut may_go_around) = (most, true);
     loop {

@@ -326,7 +326,7 @@ impl<D: Domain> Smoother<'_, D> {
         let (m, validity) = (self.extender.problem.domain(), self.extender.problem.validity());
         let mut here = here.clone();
         legs.iter().all(|Leg { step, .. }| {
-            let turns = self.may_turn.is_some_and(|reroute| reroute.is_free_to_turn(&step.instance));
+            let turns = self.may_turn.is_some_and(|reroute| reroute.is_free_to_turn(m, &step.instance));
             let care = if turns { validity.most_care() } else { 0 };
             let free = validity.free_prefix_with(care, m, &step.instance, &here);
             step.instance.motion.at_into(m, step.until, &mut here);
@@ -353,7 +353,7 @@ impl<D: Domain> Smoother<'_, D> {
     fn union(&self, a: &Leg<D>, b: &Leg<D>) -> Option<Leg<D>> {
         let m = self.extender.problem.domain();
         let (p, q) = (&*a.step.instance, &*b.step.instance);
-        let is_one_kind = p.label == q.label && p.moves == q.moves && a.may_be_cut() && b.may_be_cut();
+        let is_one_kind = p.primitive == q.primitive && p.moves == q.moves && a.may_be_cut() && b.may_be_cut();
         let like = touching_more(a, b).filter(|_| is_one_kind)?;
         let mode_of = |leg: &Leg<D>, share: f64| leg.step.instance.at(m, share * leg.step.until, self.start).mode;
         let junction = a.end(m, self.start);

@@ -44,8 +44,8 @@ fn the_puck_domain_keeps_every_law() -> Result<(), Box<Report>> {
 struct Overshoots;
 
 impl Primitive<PuckWorld> for Overshoots {
-    fn name(&self) -> &'static str {
-        "Overshoots"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(21, "Overshoots")
     }
 
     fn useful(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> bool {
@@ -96,8 +96,8 @@ fn a_failing_case_is_made_simple_kept_and_shown_again() {
 struct Hangs;
 
 impl Primitive<PuckWorld> for Hangs {
-    fn name(&self) -> &'static str {
-        "Hangs"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(22, "Hangs")
     }
 
     fn useful(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> bool {
@@ -131,8 +131,8 @@ fn a_hang_is_reported_and_names_the_call() {
 struct Idle(bool);
 
 impl Primitive<PuckWorld> for Idle {
-    fn name(&self) -> &'static str {
-        "Idle"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(23, "Idle")
     }
 
     fn useful(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> bool {

@@ -27,7 +27,7 @@ type Mutant = (&'static str, &'static str, Box<dyn Fn() -> bool>);
 const EQUAL: [(&str, &str); 5] = [
     ("Push", "nothing may touch"),
     ("Push", "the length is twice as long"),
-    ("Push", "another label"),
+    ("Push", "another primitive"),
     ("Push", "no approach"),
     ("RealBox", "the distance is the sum of the axes"),
 ];
@@ -112,8 +112,8 @@ struct Changed<P> {
 }
 
 impl<P: Primitive<PuckWorld>> Primitive<PuckWorld> for Changed<P> {
-    fn name(&self) -> &'static str {
-        self.inner.name()
+    fn id(&self) -> PrimitiveId {
+        self.inner.id()
     }
 
     fn useful(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> bool {
@@ -160,10 +160,10 @@ impl fmt::Debug for Bent {
 }
 
 fn bent(instance: Instance<PuckWorld>, at: fn(f64) -> f64, length: f64) -> Instance<PuckWorld> {
-    let (label, contacts, moves) = (instance.label, instance.contacts, instance.moves);
+    let (primitive, contacts, moves) = (instance.primitive, instance.contacts, instance.moves);
     let (object, reversible) = (instance.object, instance.reversible);
     let motion = Box::new(Bent { inner: Arc::new(instance), at, length });
-    Instance { label, motion, contacts, moves, object, reversible }
+    Instance { primitive, motion, contacts, moves, object, reversible }
 }
 
 /// Does something to the last instance.
@@ -213,7 +213,7 @@ fn changes() -> Vec<(&'static str, Changes)> {
             last!(|i| Instance { object: i.object.map(|id| ObjectId::new(1 - id.index())), ..i }),
         ),
         ("reversible is negated", last!(|i| Instance { reversible: !i.reversible, ..i })),
-        ("another label", last!(|i| Instance { label: "Other", ..i })),
+        ("another primitive", last!(|i| Instance { primitive: PrimitiveId::new(10, "Other"), ..i })),
         ("no approach", Changes { approach: |_| None, ..NONE }),
         ("a longer approach", Changes { approach: |found| found.map(|x| 1.5 * x + 1.0), ..NONE }),
         ("an approach of another sign", Changes { approach: |found| found.map(|x| -x - 0.1), ..NONE }),
@@ -242,7 +242,7 @@ fn primitives() -> Vec<Mutant> {
             "names no object",
             "names the other object",
             "reversible is negated",
-            "another label",
+            "another primitive",
             "the length is twice as long",
             "the instances are reversed",
         ];

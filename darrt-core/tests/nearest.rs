@@ -2,6 +2,7 @@
 #![cfg(feature = "testing")]
 #![allow(clippy::unwrap_used, reason = "a test says no more than that it failed")]
 
+use darrt_core::primitive::PrimitiveId;
 use std::sync::Arc;
 
 use darrt_core::distance::{ApproachVisit, Distance, Euclidean, ExactTour, GreedyVisit, Weighted};
@@ -65,7 +66,7 @@ fn grow_and_ask<D: Domain>(m: &D, mode: &D::Mode, count: usize, penalty_m: f64) 
     let rng = &mut stream(7, 0, count as u64, Purpose::Sample);
     let root = anywhere(m, mode, rng);
     let instance = Arc::new(Instance {
-        label: "test",
+        primitive: PrimitiveId::new(10, "test"),
         motion: Box::new(Straight::new(root.clone(), root.robot.clone(), 0.0)),
         contacts: D::Contacts::default(),
         moves: ComponentSet::ROBOT,

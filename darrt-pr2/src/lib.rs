@@ -1,53 +1,70 @@
-//! DARRT on the PR2: kinematics, the paper's eight primitives, its problems, the command line.
+//! DARRT on the PR2: its kinematics, its primitives, the paper's problems.
+//!
+//! ```
+//! use darrt_core::budget::Cancel;
+//! use darrt_core::observe::Silent;
+//! use darrt_task::planning::{PlanRequest, plan};
+//!
+//! let registry = darrt_pr2::registry();
+//! let bowl = registry.problems().read("bowl")?;
+//! let result = plan(&registry, &PlanRequest::new(bowl, 0), &Cancel::new(), &mut Silent)?;
+//! let found = result.plan.ok_or("no plan within the limit")?;
+//! // Judged again, from the file's content alone.
+//! darrt_pr2::verify(&found)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! | question | file |
 //! |---|---|
 //! | what is the PR2? | [`model`], [`arm`], [`forward`], [`gripper`], [`postures`], [`self_collision`] |
 //! | from where does the arm reach a pose? | [`reachability`] |
-//! | how does it plan? | [`robot`], [`world`] (with the private `supports`), [`planning`] |
-//! | the primitives of paper section 5.1 | [`arm_transit`], [`straight_line_arm_transit`], [`arm_rigid_transfer`], [`base_transit`], [`base_rigid_transfer`], [`pick`](mod@pick), [`place`](mod@place), [`push`](mod@push) |
-//! | what is a problem? | [`problem_file`], [`mod@generate`], [`grasp_families`], [`goal_means`], [`goal_check`], [`goal_edges`] |
-//! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
-//! | how well does it plan? | [`mod@bench`], [`stopwatch`] |
-//! | how are files read, written and described? | [`text_file`], [`schema`] |
-//! | what does a person see? | [`cli`], [`picture`] |
+//! | how does it plan, and what do files say of it? | [`robot`], [`mod@task`] |
+//! | the primitives of paper section 5.1 | [`primitives`] |
+//! | which problems are built in? | [`problems`] |
 
 pub mod arm;
-pub mod arm_rigid_transfer;
-pub mod arm_transit;
-pub mod base_rigid_transfer;
-pub mod base_transit;
-pub mod bench;
-pub mod cli;
-pub mod export;
-mod file_kind;
 pub mod forward;
-pub mod generate;
-pub mod goal_check;
-pub mod goal_edges;
-pub mod goal_means;
-pub mod grasp_families;
 pub mod gripper;
 pub mod model;
-mod near_pairs;
-mod one_group;
-pub mod pick;
-pub mod picture;
-pub mod place;
-pub mod plan_file;
-pub mod planning;
-pub mod planning_error;
 pub mod postures;
-pub mod problem_file;
-pub mod push;
+pub mod primitives;
+pub mod problems;
 pub mod reachability;
 pub mod robot;
-pub mod schema;
 pub mod self_collision;
-pub mod stopwatch;
-pub mod straight_line_arm_transit;
-mod supports;
-pub mod text_file;
-pub mod verify;
-mod words;
-pub mod world;
+pub mod task;
+
+use darrt_primitives::tabletop::{Tabletop, TabletopState};
+use darrt_task::plan_file::PlanFile;
+use darrt_task::problem_file::ProblemFile;
+use darrt_task::registry::Registry;
+use darrt_task::robot::{RobotError, RobotFacts, TaskRobot as _};
+use darrt_task::verify::{Proof, Refusal, VerifyOptions, verify_for};
+
+use crate::robot::Pr2;
+
+/// The domain: the PR2 at tables.
+pub type World = Tabletop<Pr2>;
+/// Its state.
+pub type WorldState = TabletopState<Pr2>;
+
+/// What the program `darrt` knows: the PR2, the paper's primitives, the built-in problems. Add your own to it.
+pub fn registry() -> Registry<Pr2> {
+    Registry::new().with_problems(problems::collection())
+}
+
+/// The PR2 of a problem as data, for the verifier and for pictures.
+///
+/// # Errors
+/// [`RobotError`] when the table `[robot]` asks for what the PR2 is not.
+pub fn facts(problem: &ProblemFile) -> Result<RobotFacts, RobotError> {
+    Pr2::facts(&problem.robot)
+}
+
+/// Replays a plan of the PR2; see [`darrt_task::verify`].
+///
+/// # Errors
+/// As [`darrt_task::verify::verify`]; also when there is no such PR2.
+pub fn verify(plan: &PlanFile) -> Result<Proof, Refusal> {
+    verify_for::<Pr2>(plan, &VerifyOptions::default())
+}

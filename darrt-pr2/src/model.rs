@@ -6,7 +6,7 @@
 mod error;
 
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use darrt_geom::Body;
 use darrt_primitives::kinematics::{
@@ -87,13 +87,13 @@ pub struct Pr2Model {
 ///
 /// # Errors
 /// None in practice: the description is part of the program and tested.
-pub(crate) fn embedded_description() -> Result<&'static RobotDescription, UrdfError> {
-    static READ: OnceLock<RobotDescription> = OnceLock::new();
+pub(crate) fn embedded_description() -> Result<Arc<RobotDescription>, UrdfError> {
+    static READ: OnceLock<Arc<RobotDescription>> = OnceLock::new();
     if let Some(description) = READ.get() {
-        return Ok(description);
+        return Ok(Arc::clone(description));
     }
-    let description = RobotDescription::from_text(URDF)?;
-    Ok(READ.get_or_init(|| description))
+    let description = Arc::new(RobotDescription::from_text(URDF)?);
+    Ok(Arc::clone(READ.get_or_init(|| description)))
 }
 
 impl Pr2Model {
@@ -102,7 +102,7 @@ impl Pr2Model {
     /// # Errors
     /// None in practice: the description is part of the program and tested.
     pub fn embedded() -> Result<Self, ModelError> {
-        Self::from_urdf(embedded_description()?, &no_meshes)
+        Self::from_urdf(&*embedded_description()?, &no_meshes)
     }
 
     /// The robot of a URDF file; meshes are looked up in `mesh_folders` and become their convex hulls.

@@ -43,7 +43,7 @@ impl ArmPosture {
     ];
 
     /// The name used in files and on the command line.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Tucked => "tucked",
             Self::Untucked => "untucked",

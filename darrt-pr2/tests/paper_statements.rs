@@ -12,7 +12,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-use darrt_pr2::problem_file::{ProblemFile, ShapeSpec, builtin};
+use darrt_pr2::problems::builtin;
+use darrt_task::problem_file::{ProblemFile, ShapeSpec};
 use nalgebra::{Point2, Vector2};
 
 /// Free space around the disc (m).

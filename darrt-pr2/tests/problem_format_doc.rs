@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 
 use darrt_pr2::postures::ArmPosture;
-use darrt_pr2::problem_file::{GoalState, GoalTarget, ProblemFile, builtin, builtin_names};
+use darrt_pr2::problems::{builtin, builtin_names};
+use darrt_task::problem_file::{GoalState, GoalTarget, ProblemFile};
 
 #[test]
 fn the_example_in_the_documentation_is_valid() {
-    let page = include_str!("../docs/problem-format.md");
+    let page = include_str!("../../darrt-primitives/task/docs/problem-format.md");
     let example = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
     let problem = ProblemFile::from_toml(example, "docs/problem-format.md").unwrap();
     assert_eq!(problem.name, "mug-to-tray");
@@ -37,7 +38,7 @@ fn keys(value: &serde_json::Value, found: &mut Vec<String>) {
 
 #[test]
 fn every_key_and_every_posture_is_documented() {
-    let page = include_str!("../docs/problem-format.md");
+    let page = include_str!("../../darrt-primitives/task/docs/problem-format.md");
     let mut found = Vec::new();
     for name in builtin_names() {
         keys(&serde_json::to_value(builtin(name).unwrap()).unwrap(), &mut found);

@@ -9,10 +9,12 @@ mod plans;
 #[path = "verify_plans/wrong.rs"]
 mod wrong;
 
-use darrt_pr2::plan_file::PlanFile;
-use darrt_pr2::verify::{VerifyOptions, verify, verify_with};
+use darrt_pr2::robot::Pr2;
+use darrt_pr2::verify;
+use darrt_task::plan_file::PlanFile;
+use darrt_task::verify::{VerifyOptions, verify_for};
 
-fn proven(plan: &PlanFile) -> darrt_pr2::verify::Proof {
+fn proven(plan: &PlanFile) -> darrt_task::verify::Proof {
     verify(plan).unwrap_or_else(|refusal| panic!("{refusal}"))
 }
 
@@ -42,10 +44,11 @@ fn proofs_survive_the_file() {
 fn a_finer_replay_looks_at_more_states() {
     let plan = plans::push();
     let fine = VerifyOptions { travel_m: 1e-3, ..VerifyOptions::default() };
-    let proof = verify_with(&plan, &fine).unwrap();
+    let proof = verify_for::<Pr2>(&plan, &fine).unwrap();
     assert!(proof.states > 2 * proven(&plan).states);
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let refusal = verify_with(&plan, &VerifyOptions { travel_m: bad, ..VerifyOptions::default() }).unwrap_err();
+        let refusal =
+            verify_for::<Pr2>(&plan, &VerifyOptions { travel_m: bad, ..VerifyOptions::default() }).unwrap_err();
         assert!(refusal.to_string().contains("travel_m"), "{refusal}");
     }
 }

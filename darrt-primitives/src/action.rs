@@ -60,23 +60,3 @@ impl<M: crate::manipulator::Manipulator> Chain<M> {
         if self.instances.is_empty() { Err(Infeasible::NoProgress) } else { Ok(self.instances) }
     }
 }
-
-/// The names of the paper's primitives (section 5.1), for instances.
-pub mod label {
-    /// The arm moves alone.
-    pub const ARM_TRANSIT: &str = "Arm-Transit";
-    /// The hand moves on a straight line, empty.
-    pub const STRAIGHT_LINE_ARM_TRANSIT: &str = "Straight-Line-Arm-Transit";
-    /// The arm moves with an object in the hand.
-    pub const ARM_RIGID_TRANSFER: &str = "Arm-Rigid-Transfer";
-    /// The base moves alone.
-    pub const BASE_TRANSIT: &str = "Base-Transit";
-    /// The base moves with an object in the hand.
-    pub const BASE_RIGID_TRANSFER: &str = "Base-Rigid-Transfer";
-    /// An object is attached and lifted.
-    pub const PICK: &str = "Pick";
-    /// An object is set down and let go.
-    pub const PLACE: &str = "Place";
-    /// An object is pushed.
-    pub const PUSH: &str = "Push";
-}

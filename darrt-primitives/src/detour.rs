@@ -10,9 +10,9 @@ pub mod arm;
 
 pub use arm::ArmDetour;
 
-use crate::action::label;
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::base_path::BasePath;
+use crate::contract::Contract;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::Contacts;
 use crate::tabletop::{Tabletop, TabletopState};
@@ -27,10 +27,10 @@ pub struct Detour {
 }
 
 impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
-    fn is_free_to_turn(&self, instance: &Instance<Tabletop<M>>) -> bool {
+    fn is_free_to_turn(&self, m: &Tabletop<M>, instance: &Instance<Tabletop<M>>) -> bool {
         // Not an approach, a push, a pick or a place.
-        let free = [label::ARM_TRANSIT, label::ARM_RIGID_TRANSFER, label::BASE_TRANSIT, label::BASE_RIGID_TRANSFER];
-        instance.reversible && free.contains(&instance.label) && instance.contacts == Contacts::default()
+        let is_free = m.contract(instance.primitive).is_some_and(Contract::is_free);
+        instance.reversible && is_free && instance.contacts == Contacts::default()
     }
 
     fn reroute(
@@ -42,7 +42,7 @@ impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
         from: &TabletopState<M>,
         rng: &mut dyn Rng,
     ) -> Result<Instance<Tabletop<M>>, NoWay> {
-        if !Reroute::<Tabletop<M>>::is_free_to_turn(self, instance) {
+        if !Reroute::<Tabletop<M>>::is_free_to_turn(self, m, instance) {
             return Err(NoWay::WithAnyCare);
         }
         let end = instance.at(m, 1.0, from);
@@ -63,7 +63,7 @@ impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
         let carried = inside.mode.held().map_or(Carried::Nothing, |held| Carried::Held(*held));
         let motion = ArmMotion::new(m, from, &waypoints, carried, inside.mode.clone(), inside.mode);
         Ok(Instance {
-            label: instance.label,
+            primitive: instance.primitive,
             motion: Box::new(motion),
             contacts: Contacts::default(),
             moves: instance.moves,

@@ -5,6 +5,7 @@
 //! | what must a robot offer? | [`manipulator`], [`kinematics`] |
 //! | where can robot and objects be? | [`arm_space`], [`object_space`], [`tabletop`] |
 //! | what is held, what rests on what? | [`mode`] |
+//! | which primitives are there, and what do they promise? | [`primitive`], [`contract`] |
 //! | how do objects slide when pushed? | [`push`], [`contact`] |
 //! | how can an object be held? | [`grasp`] |
 //! | how far may what is held lean? | [`tilt`] |
@@ -24,6 +25,7 @@ pub mod arm_motion;
 pub mod arm_space;
 pub mod base_path;
 pub mod contact;
+pub mod contract;
 pub mod detour;
 pub mod edge_margin;
 pub mod error;
@@ -37,6 +39,7 @@ pub mod length_range;
 pub mod manipulator;
 pub mod mode;
 pub mod object_space;
+pub mod primitive;
 pub mod push;
 pub mod surroundings;
 pub mod tabletop;

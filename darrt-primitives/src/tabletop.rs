@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use darrt_core::domain::Domain;
+use darrt_core::primitive::PrimitiveId;
 use darrt_core::state::{ComponentId, ComponentSet, ObjectId, State};
 use darrt_geom::body::Body;
 use darrt_geom::error::GeomError;
@@ -13,6 +14,7 @@ use nalgebra::{Isometry3, Point2, Vector3};
 use smallvec::SmallVec;
 
 use crate::arm_space::ArmSpace;
+use crate::contract::Contract;
 use crate::edge_margin::Brink;
 use crate::grasp::hold::{Hold, Load, NoHold, hold};
 use crate::grasp::{Grasp, GraspFamily};
@@ -20,6 +22,7 @@ use crate::length_range::LengthRange;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Held, Mode, SurfaceId};
 use crate::object_space::ObjectSpace;
+use crate::primitive::STANDARD;
 use crate::push::edge_stop::{EdgeRule, RimReach};
 use crate::surroundings::{NearPair, Strictness, Surroundings};
 
@@ -187,6 +190,7 @@ pub struct Tabletop<M: Manipulator> {
     supports: Vec<Support>,
     settings: ActionSettings<M::Joints>,
     surroundings: Arc<Surroundings>,
+    contracts: Arc<[(PrimitiveId, Contract)]>,
 }
 
 /// The state of such a domain.
@@ -210,7 +214,21 @@ impl<M: Manipulator> Tabletop<M> {
         let surroundings = Surroundings::new(&*manipulator, &movables, &supports, fixed, strictness)?;
         let surroundings = Arc::new(surroundings);
         let movables = movables.into();
-        Ok(Self { manipulator, robot, objects, movables, supports, settings, surroundings })
+        let contracts = STANDARD.into();
+        Ok(Self { manipulator, robot, objects, movables, supports, settings, surroundings, contracts })
+    }
+
+    /// The same with further primitives, by their indices: a primitive is free to be rerouted, and its instances are written
+    /// into plans, only if its contract is known here.
+    #[must_use]
+    pub fn with_primitives(mut self, further: &[(PrimitiveId, Contract)]) -> Self {
+        self.contracts = self.contracts.iter().chain(further).copied().collect();
+        self
+    }
+
+    /// What instances of `primitive` keep to, if it is known here.
+    pub fn contract(&self, primitive: PrimitiveId) -> Option<&Contract> {
+        self.contracts.iter().find(|(id, _)| *id == primitive).map(|(_, contract)| contract)
     }
 
     /// Pairs of bodies that are nearer than the least margin in `state`, the start, and do not touch, may be as near from
@@ -339,6 +357,7 @@ impl<M: Manipulator> Domain for Tabletop<M> {
             supports: self.supports.clone(),
             settings: self.settings.clone(),
             surroundings: Arc::new(self.surroundings.without_robot()),
+            contracts: Arc::clone(&self.contracts),
         })
     }
 

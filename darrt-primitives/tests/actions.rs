@@ -9,7 +9,7 @@ use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
 use darrt_primitives::action::line::{follow_in_room, room_for_hand};
 use darrt_primitives::action::stance::Refused;
 use darrt_primitives::action::transfer::{transfer, transfer_by_base};
-use darrt_primitives::action::{label, pick::pick, place::place, push::push};
+use darrt_primitives::action::{pick::pick, place::place, push::push};
 use darrt_primitives::edge_margin::Brink;
 use darrt_primitives::grasp::footprint::Footprint;
 use darrt_primitives::grasp::overhead::{OverheadGrasps, WallGrasps, WallOptions};
@@ -19,6 +19,7 @@ use darrt_primitives::length_range::LengthRange;
 use darrt_primitives::manipulator::{Configuration, Manipulator};
 use darrt_primitives::mode::{Contacts, SurfaceId, TouchReason};
 use darrt_primitives::object_space::upright;
+use darrt_primitives::primitive;
 use darrt_primitives::push::Friction;
 use darrt_primitives::push::edge_stop::RimReach;
 use darrt_primitives::push::steady::SlidingDisc;
@@ -56,7 +57,7 @@ fn a_push_comes_up_to_the_object_and_takes_it_along() {
     let from = start(&m);
     let instances = pushed(&m, &from, [0.1, 0.05]);
     let [.., approach, along] = &instances[..] else { panic!("too few instances") };
-    assert_eq!((approach.label, along.label), (label::STRAIGHT_LINE_ARM_TRANSIT, label::PUSH));
+    assert_eq!((approach.primitive, along.primitive), (primitive::STRAIGHT_LINE_ARM_TRANSIT, primitive::PUSH));
     assert_eq!((approach.object, along.object), (Some(object(0)), Some(object(0))));
     assert_eq!((approach.moves, approach.contacts), (ComponentSet::ROBOT, Contacts::default()));
     assert_eq!(along.moves, ComponentSet::ROBOT.with(ComponentId::Object(object(0))));
@@ -322,8 +323,8 @@ fn a_pick_lifts_the_object_straight_up() {
     for id in (0..3).map(object) {
         let instances = first(|rng| pick(&m, &from, id, rng));
         let [.., approach, lift] = &instances[..] else { panic!("too few instances") };
-        assert_eq!((approach.label, approach.object), (label::STRAIGHT_LINE_ARM_TRANSIT, Some(id)));
-        assert_eq!((lift.label, lift.object, lift.reversible), (label::PICK, Some(id), false));
+        assert_eq!((approach.primitive, approach.object), (primitive::STRAIGHT_LINE_ARM_TRANSIT, Some(id)));
+        assert_eq!((lift.primitive, lift.object, lift.reversible), (primitive::PICK, Some(id), false));
         assert_eq!((approach.contacts, lift.contacts), (Contacts::default(), on_the_left_table(id)));
         let after = end(&m, &from, &instances);
         assert_eq!(after.mode.held().map(|held| held.object), Some(id));
@@ -352,7 +353,7 @@ fn a_place_sets_the_object_down_and_lets_go() {
         let target = upright(Vector3::new(-0.3, -0.05, z + 0.01), 0.5);
         let instances = first(|rng| place(&m, &from, &target, rng));
         let [carried @ .., down, back] = &instances[..] else { panic!("too few instances") };
-        assert_eq!((down.label, down.object, down.reversible), (label::PLACE, Some(id), false));
+        assert_eq!((down.primitive, down.object, down.reversible), (primitive::PLACE, Some(id), false));
         assert!(carried.iter().all(|instance| instance.contacts == Contacts::default()));
         assert_eq!(down.contacts, on_the_left_table(id));
         assert_eq!(back.contacts, Contacts { fingers: Some((id, TouchReason::Retreat)), support: None });
@@ -495,8 +496,8 @@ fn a_transfer_brings_what_is_held_to_its_target() {
         let target = upright(Vector3::new(0.4, 0.2, 1.0), 0.7);
         let instances = first(|rng| transfer(&m, &from, &target, rng));
         assert!(instances.iter().all(|i| i.object == Some(id) && i.reversible));
-        let names = [label::ARM_RIGID_TRANSFER, label::BASE_RIGID_TRANSFER];
-        assert!(instances.iter().all(|i| names.contains(&i.label)));
+        let names = [primitive::ARM_RIGID_TRANSFER, primitive::BASE_RIGID_TRANSFER];
+        assert!(instances.iter().all(|i| names.contains(&i.primitive)));
         assert_at(&pose(&end(&m, &from, &instances), id), &target, id != object(2));
     }
 }
@@ -515,7 +516,7 @@ fn the_base_alone_carries_on_the_level_and_no_other_way() {
             |target: &Isometry3<f64>| transfer_by_base(&m, &from, target, &mut stream(3, 0, 0, Purpose::Extend));
         let target = turned(Vector3::z() * 0.6, [0.3, -0.2, 0.0]);
         let instances = alone(&target).unwrap();
-        assert_eq!(instances.iter().map(|i| i.label).collect::<Vec<_>>(), [label::BASE_RIGID_TRANSFER]);
+        assert_eq!(instances.iter().map(|i| i.primitive).collect::<Vec<_>>(), [primitive::BASE_RIGID_TRANSFER]);
         let after = end(&m, &from, &instances);
         assert_eq!(after.robot.arm, from.robot.arm);
         assert_at(&pose(&after, id), &target, id != object(2));

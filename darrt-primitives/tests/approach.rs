@@ -6,11 +6,12 @@ use darrt_core::primitive::Instances;
 use darrt_core::random::{Purpose, stream};
 use darrt_core::state::ObjectId;
 use darrt_primitives::action::approach::{NO_WAY_M, to_grasp_m, to_push_m};
-use darrt_primitives::action::{label, pick::pick, push::push};
+use darrt_primitives::action::{pick::pick, push::push};
 use darrt_primitives::grasp::Grip;
 use darrt_primitives::grasp::rim::{Rim, RimGrasps, RimOptions};
 use darrt_primitives::length_range::LengthRange;
 use darrt_primitives::manipulator::Manipulator;
+use darrt_primitives::primitive;
 use darrt_primitives::push::edge_stop::EdgeRule;
 use darrt_primitives::testing::gantry::{Gantry, TIP_BEYOND_TOOL_M};
 use darrt_primitives::testing::table::{Table, TableState, altered_table, honest_table, object, start};
@@ -26,7 +27,7 @@ fn gap_m(m: &Table, from: &TableState, instances: &Instances<Table>, bound_m: f6
     // The hand comes down a little behind what it pushes: the contact is the last waypoint where that has not moved yet.
     let rests = |t: f64| last.at(m, t, from).object(object(0)) == from.object(object(0));
     let knots = last.motion.knots();
-    let t = if last.label == label::PUSH { knots.iter().copied().rfind(|t| rests(*t)).unwrap() } else { 0.0 };
+    let t = if last.primitive == primitive::PUSH { knots.iter().copied().rfind(|t| rests(*t)).unwrap() } else { 0.0 };
     let travel_m: f64 = instances.iter().map(|instance| instance.motion.length()).sum();
     assert!(bound_m <= travel_m, "{bound_m} {travel_m}");
     (tool(m, &last.at(m, t, from)) - tool(m, from)).norm()

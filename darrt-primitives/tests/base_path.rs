@@ -15,12 +15,12 @@ use darrt_core::validity::Validity;
 use darrt_geom::body::{Body, Part};
 use darrt_geom::scene::FixedBody;
 use darrt_geom::shape::Shape;
-use darrt_primitives::action::label;
 use darrt_primitives::arm_motion::{ArmMotion, Carried, Waypoint};
 use darrt_primitives::base_path::BasePath;
 use darrt_primitives::detour::Detour;
 use darrt_primitives::manipulator::Configuration;
 use darrt_primitives::mode::Contacts;
+use darrt_primitives::primitive;
 use darrt_primitives::testing::gantry::{Gantry, motion};
 use darrt_primitives::testing::table::{Table, TableState, furnished_table, start};
 use darrt_primitives::testing::yardstick::Yardstick;
@@ -69,8 +69,15 @@ fn drive(m: &Table, from: &TableState, way: &[[f64; 3]]) -> Instance<Table> {
     let waypoints = way.iter().skip(1).map(|base| Configuration { base: *base, ..from.robot });
     let waypoints: Vec<_> = waypoints.map(|robot| Waypoint { robot, pushed: 0.0 }).collect();
     let motion = ArmMotion::new(m, from, &waypoints, Carried::Nothing, from.mode.clone(), from.mode.clone());
-    let (label, moves) = (label::BASE_TRANSIT, ComponentSet::ROBOT);
-    Instance { label, motion: Box::new(motion), contacts: Contacts::default(), moves, object: None, reversible: true }
+    let (primitive, moves) = (primitive::BASE_TRANSIT, ComponentSet::ROBOT);
+    Instance {
+        primitive,
+        motion: Box::new(motion),
+        contacts: Contacts::default(),
+        moves,
+        object: None,
+        reversible: true,
+    }
 }
 
 fn length_m(way: &[[f64; 3]]) -> f64 {

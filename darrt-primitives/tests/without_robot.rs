@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use darrt_core::domain::Domain;
 use darrt_core::motion::{Instance, Straight};
+use darrt_core::primitive::PrimitiveId;
 use darrt_core::space::ComponentSpace;
 use darrt_core::state::{ComponentSet, State};
 use darrt_core::testing::strategies::{config, configs};
@@ -75,7 +76,7 @@ fn the_place_of_the_robot_is_no_matter_to_objects_that_rest() {
             let from = State { robot: a, ..state.clone() };
             let length = m.robot().distance(&a, &b);
             let through = Instance {
-                label: "Through",
+                primitive: PrimitiveId::new(10, "Through"),
                 motion: Box::new(Straight::new(from.clone(), b, length)),
                 contacts,
                 moves: ComponentSet::ROBOT,

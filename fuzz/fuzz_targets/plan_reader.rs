@@ -2,7 +2,7 @@
 #![no_main]
 
 use darrt_fuzz::text::text;
-use darrt_pr2::plan_file::PlanFile;
+use darrt_task::plan_file::PlanFile;
 use libfuzzer_sys::fuzz_target;
 
 const PLAN: &str = include_str!("../seeds/plan_reader/wave.json");

@@ -2,11 +2,12 @@
 #![no_main]
 
 use arbitrary::Arbitrary;
-use darrt_pr2::plan_file::{
+use darrt_task::plan_file::{
     AllowedContact, ContactReason, CostName, Hold, PlanFile, PlanFileError, PlanFormat, PlannerFacts, Pose, SearchName,
     Step, VERSION, Waypoint,
 };
-use darrt_pr2::problem_file::{DistanceName, PrimitiveName, SamplerName, builtin, builtin_names};
+use darrt_task::problem_file::{DistanceName, PrimitiveName, SamplerName};
+use darrt_pr2::problems::{builtin, builtin_names};
 use libfuzzer_sys::fuzz_target;
 
 #[derive(Debug, Clone, Arbitrary)]
@@ -68,7 +69,7 @@ impl StepSketch {
             reason: pick(&reasons, *reason),
         };
         Step {
-            primitive: pick(&PrimitiveName::ALL, self.primitive),
+            primitive: pick(&PrimitiveName::PAPER, self.primitive),
             object: self.object.clone(),
             holds: self.holds.as_ref().map(|(object, at)| Hold { object: object.clone(), tool_from_object: pose(at) }),
             pushes: self.pushes.clone(),
@@ -79,10 +80,10 @@ impl StepSketch {
 }
 
 impl PlanSketch {
-    fn plan(&self) -> PlanFile {
-        let samplers = [SamplerName::RobotOrObjects, SamplerName::RandomSubset, SamplerName::Full];
+    fn plan(&darrt_pr2::registry(), &self) -> PlanFile {
+        let samplers = [SamplerName::ROBOT_OR_OBJECTS, SamplerName::RANDOM_SUBSET, SamplerName::FULL];
         let costs = [CostName::Steps, CostName::Travel, CostName::Clearance];
-        let distances = [DistanceName::Greedy, DistanceName::Euclidean, DistanceName::ExactTour];
+        let distances = [DistanceName::GREEDY, DistanceName::EUCLIDEAN, DistanceName::EXACT_TOUR];
         PlanFile {
             format: PlanFormat::DarrtPlan,
             version: VERSION,

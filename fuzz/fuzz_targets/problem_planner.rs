@@ -5,8 +5,9 @@ use darrt_core::laws::check_accounts;
 use darrt_core::search::Darrt;
 use darrt_core::shorten::ShortenOptions;
 use darrt_fuzz::text::text;
-use darrt_pr2::planning::{prepare, strategy};
-use darrt_pr2::problem_file::{ProblemFile, ShapeSpec, builtin_text};
+use darrt_task::planning::{prepare, strategy};
+use darrt_task::problem_file::{ProblemFile, ShapeSpec};
+use darrt_pr2::problems::builtin_text;
 use libfuzzer_sys::fuzz_target;
 
 const ITERATIONS: u64 = 4;
@@ -18,8 +19,8 @@ fuzz_target!(|data: &[u8]| {
     if file.robot.urdf.is_some() || shapes.any(|shape| matches!(shape, ShapeSpec::Mesh { .. })) {
         return;
     }
-    let Ok(prepared) = prepare(&file) else { return };
-    let Ok(mut strategy) = strategy(&file.sampling, file.sampling.sampler, file.sampling.distance) else { return };
+    let Ok(prepared) = prepare(&darrt_pr2::registry(), &file) else { return };
+    let Ok(mut strategy) = strategy(&darrt_pr2::registry(), &PlanRequest::new(file.clone(), 0)) else { return };
     // Hundreds of extensions more once a plan is found.
     strategy.shorten = ShortenOptions::default();
     let mut darrt = Darrt::new(&prepared.problem, &strategy, data.len() as u64, 0, 10_000);

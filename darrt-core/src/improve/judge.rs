@@ -88,7 +88,9 @@ impl<D: Domain> Roadmap<'_, D> {
     }
 
     fn may_turn(&self, step: &Step<D>) -> bool {
-        self.extender.reroute.is_some_and(|reroute| reroute.is_free_to_turn(&step.instance))
+        self.extender
+            .reroute
+            .is_some_and(|reroute| reroute.is_free_to_turn(self.extender.problem.domain(), &step.instance))
     }
 
     /// Finds the way of a link that is guessed, and judges one that is known.

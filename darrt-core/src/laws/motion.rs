@@ -101,7 +101,7 @@ pub fn check_motion<D: Domain>(
 /// All laws of an instance that was propagated from `from`: those of its motion and the frame rule.
 ///
 /// # Errors
-/// The first law that is [`Broken`], with the label of the instance, and the component.
+/// The first law that is [`Broken`], with the primitive of the instance, and the component.
 pub fn check_instance<D: Domain>(
     m: &D,
     instance: &Instance<D>,
@@ -121,7 +121,7 @@ pub fn check_instance<D: Domain>(
         Ok(())
     };
     watched(&about, check).map_err(|broken: Broken| {
-        let broken = broken.of(format_args!("instance {:?}", instance.label));
+        let broken = broken.of(format_args!("instance {:?}", instance.primitive));
         broken.replayed_by(about)
     })
 }

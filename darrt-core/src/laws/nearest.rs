@@ -1,5 +1,6 @@
 //! The law of [`Distance::nearest`]: whatever it skips, it answers as the obvious scan does.
 
+use crate::primitive::PrimitiveId;
 use std::sync::Arc;
 
 use crate::distance::Distance;
@@ -86,7 +87,7 @@ pub fn tree_of<D: Domain>(m: &D, root: &State<D>, others: impl IntoIterator<Item
         let states = vec![root.clone(), state.clone()];
         let Some(motion) = Waypoints::new(states, &[0.0], root.mode.clone()) else { continue };
         let instance = Arc::new(Instance {
-            label: "law",
+            primitive: PrimitiveId::new(10, "law"),
             motion: Box::new(motion),
             contacts: D::Contacts::default(),
             moves: ComponentSet::EMPTY,

@@ -250,7 +250,7 @@ fn same_outcome<D: Domain>(found: &Outcome<D>, against: &Outcome<D>) -> Result<(
         for (i, (a, b)) in p.plan().steps().iter().zip(q.plan().steps()).enumerate() {
             let of = |broken: Broken| broken.of(format_args!("step {i}"));
             equal(THREADS, &(a.until, a.primitive), &(b.until, b.primitive)).map_err(of)?;
-            equal(THREADS, &a.instance.label, &b.instance.label).map_err(of)?;
+            equal(THREADS, &a.instance.primitive, &b.instance.primitive).map_err(of)?;
         }
     }
     Ok(())

@@ -215,13 +215,14 @@ type Propagated<D> = Result<Instances<D>, Infeasible>;
 impl<D: Domain> Trial<'_, '_, D> {
     fn run(&self) -> Result<Tried<D>, Broken> {
         let (from_before, to_before) = (self.from.clone(), self.to.clone());
-        let name = self.primitive.name();
+        let id = self.primitive.id();
         let useful = self.usefulness()?;
         self.extremes()?;
         let tried = if useful { self.propagation()? } else { Tried::NotUseful };
         equal(UNTOUCHED, self.from, &from_before)?;
         equal(UNTOUCHED, self.to, &to_before)?;
-        equal(NAME, &self.primitive.name(), &name)?;
+        let now = self.primitive.id();
+        equal(NAME, &(now.index(), now.name()), &(id.index(), id.name()))?;
         Ok(tried)
     }
 
@@ -324,7 +325,7 @@ impl<D: Domain> Trial<'_, '_, D> {
         ensure(ENDS, instances.len() <= most, || format!("{} instances", instances.len()), "the declared bound")?;
         let mut end = self.from.clone();
         for (i, instance) in instances.iter().enumerate() {
-            let of = |broken: Broken| broken.of(format_args!("instance {i} {:?}", instance.label));
+            let of = |broken: Broken| broken.of(format_args!("instance {i} {:?}", instance.primitive));
             equal(CHAINED, &instance.at(self.m, 0.0, self.from), &end).map_err(|broken| of(broken).at(0.0))?;
             check_instance(self.m, instance, &end, self.claims.ts, &self.claims.motion)
                 .map_err(|broken| Broken { replay: Box::default(), ..broken })?;
@@ -376,7 +377,7 @@ impl<D: Domain> Trial<'_, '_, D> {
         };
         equal(law, &found.len(), &against.len()).map_err(|broken| broken.of("number of instances"))?;
         for (i, (p, q)) in found.iter().zip(against).enumerate() {
-            let of = |broken: Broken| broken.of(format_args!("instance {i} {:?}", q.label));
+            let of = |broken: Broken| broken.of(format_args!("instance {i} {:?}", q.primitive));
             equal(law, &head(p), &head(q)).map_err(of)?;
             equal(law, &p.contacts, &q.contacts).map_err(of)?;
             for t in self.claims.ts.iter().copied().chain([0.0, 1.0]) {
@@ -390,7 +391,7 @@ impl<D: Domain> Trial<'_, '_, D> {
 
 /// Everything of an instance that can be compared at a glance.
 fn head<D: Domain>(instance: &Instance<D>) -> impl PartialEq + std::fmt::Debug + use<D> {
-    (instance.label, instance.motion.length(), instance.moves, instance.object, instance.reversible)
+    (instance.primitive, instance.motion.length(), instance.moves, instance.object, instance.reversible)
 }
 
 /// An instance allows the contact with the object that it names: `validity` may find other reasons why
@@ -417,7 +418,7 @@ pub fn check_contacts<D: Domain>(
             states.extend((0..ANYWHERE).map(|_| State { robot: m.robot().sample(&mut rng), ..half.clone() }));
             states.extend(borders(m, validity, &states, &mut rng));
             exempts(m, validity, instance, from, &states)
-                .map_err(|broken| broken.of(format_args!("instance {:?}", instance.label)))?;
+                .map_err(|broken| broken.of(format_args!("instance {:?}", instance.primitive)))?;
             let Some(name) = instance.object.map(|id: ObjectId| m.component_name(ComponentId::Object(id))) else {
                 continue;
             };
@@ -428,7 +429,7 @@ pub fn check_contacts<D: Domain>(
                 let names_it = *blame.first == *name || *blame.second == *name;
                 if names_it && is_of_the_robot(m, validity, instance, &state, &blame) {
                     let broken = Broken::new(CONTACTS, blame.to_string(), format!("contact with {name} allowed"));
-                    return Err(broken.at(t).of(format_args!("instance {:?}", instance.label)));
+                    return Err(broken.at(t).of(format_args!("instance {:?}", instance.primitive)));
                 }
             }
         }

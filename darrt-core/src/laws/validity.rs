@@ -126,7 +126,7 @@ pub fn check_validity<D: Domain>(
     let trial = Trial { m, validity, instance, from, claims };
     let about = || format!("check_validity(&{instance:?}, &{from:?}, {claims:?}, {seed})");
     watched(&about, || trial.run(seed))
-        .map_err(|broken| broken.of(format_args!("motion {:?}", instance.label)).replayed_by(about))
+        .map_err(|broken| broken.of(format_args!("motion {:?}", instance.primitive)).replayed_by(about))
 }
 
 /// At most so many metres lie between two looks at a free prefix, as long as it is not longer than [`MOST_LOOKS`] of them.
@@ -311,7 +311,7 @@ fn readable(blame: &Blame) -> Result<(), Broken> {
 /// `instance` run on `[0, until]` only.
 pub fn truncated<D: Domain>(instance: &Arc<Instance<D>>, until: f64) -> Instance<D> {
     Instance {
-        label: instance.label,
+        primitive: instance.primitive,
         motion: Box::new(Cut { instance: Arc::clone(instance), until }),
         contacts: instance.contacts.clone(),
         moves: instance.moves,
@@ -386,7 +386,7 @@ pub fn check_against_oracle<D: Domain>(
             let broken = Broken::new(ORACLE, format!("free up to {:?}", free.fraction), blame.to_string());
             return Err(broken
                 .at(t)
-                .of(format_args!("motion {:?}", instance.label))
+                .of(format_args!("motion {:?}", instance.primitive))
                 .replayed_by(|| format!("check_against_oracle(&{instance:?}, &{from:?}, {looks})")));
         }
     }

@@ -28,9 +28,9 @@ impl<D: Domain> Reversed<D> {
     /// The same as an instance: it moves and touches what the forward one does.
     pub fn instance(forward: &Arc<Instance<D>>, until: f64) -> Option<Instance<D>> {
         let motion = Self::new(Arc::clone(forward), until)?;
-        let Instance { label, moves, object, reversible, .. } = **forward;
+        let Instance { primitive, moves, object, reversible, .. } = **forward;
         Some(Instance {
-            label,
+            primitive,
             motion: Box::new(motion),
             contacts: forward.contacts.clone(),
             moves,

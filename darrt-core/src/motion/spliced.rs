@@ -97,9 +97,9 @@ impl<D: Domain> Spliced<D> {
 
     /// The same as an instance that is called, touches and moves what `like` does.
     pub fn instance(sections: Vec<Section<D>>, like: &Instance<D>) -> Option<Instance<D>> {
-        let Instance { label, moves, object, reversible, .. } = *like;
+        let Instance { primitive, moves, object, reversible, .. } = *like;
         let motion = Box::new(Self::new(sections)?);
-        Some(Instance { label, motion, contacts: like.contacts.clone(), moves, object, reversible })
+        Some(Instance { primitive, motion, contacts: like.contacts.clone(), moves, object, reversible })
     }
 }
 

@@ -302,11 +302,11 @@ mod tests {
             assert_eq!(step.instance.at(m, 0.0, problem.start()), node.state);
             assert_eq!(step.instance.at(m, step.until, problem.start()), connect.goal_nodes[*next].state);
             let free = problem.validity().free_prefix(m, &step.instance, &node.state);
-            assert!(free.fraction >= step.until, "{}: {:?}", step.instance.label, free.blame);
+            assert!(free.fraction >= step.until, "{}: {:?}", step.instance.primitive, free.blame);
             let is_turned = format!("{:?}", step.instance.motion).starts_with("Reversed");
             turned += u32::from(is_turned);
-            pushes += u32::from(step.instance.label == "Push");
-            assert!(!is_turned || step.instance.label != "Push");
+            pushes += u32::from(step.instance.primitive.name() == "Push");
+            assert!(!is_turned || step.instance.primitive.name() != "Push");
         }
         assert!(pushes > 0 && turned > 0, "{pushes} pushes, {turned} turned around");
     }

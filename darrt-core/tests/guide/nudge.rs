@@ -12,8 +12,8 @@ const STROKE_M: f64 = 0.25;
 pub struct Nudge;
 
 impl Primitive<PuckWorld> for Nudge {
-    fn name(&self) -> &'static str {
-        "Nudge"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(9, "Nudge")
     }
 
     fn useful(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> bool {
@@ -44,7 +44,7 @@ impl Primitive<PuckWorld> for Nudge {
         *end.objects.get_mut(id.index()).ok_or(Infeasible::NoContact)? = along(&at, stroke);
         let mode = touching.mode.clone();
         let nudge = Instance {
-            label: "Nudge",
+            primitive: PrimitiveId::new(9, "Nudge"),
             motion: Box::new(Waypoints::new(vec![touching, end], &[stroke], mode).ok_or(Infeasible::NoProgress)?),
             contacts: ComponentSet::EMPTY.with(ComponentId::Object(id)),
             moves: ComponentSet::ROBOT.with(ComponentId::Object(id)),

@@ -7,16 +7,16 @@ use darrt_core::extend::{ExtendOptions, Extender, Extension};
 use darrt_core::motion::Instance;
 use darrt_core::observe::accounts::Bucket;
 use darrt_core::partial::PartialState;
-use darrt_core::primitive::{Infeasible, Instances, Primitive};
+use darrt_core::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use darrt_core::problem::Problem;
 use darrt_core::reroute::{NoWay, Reroute};
 use darrt_core::state::{ComponentId, ComponentSet, State};
 use darrt_core::validity::{Blame, BlockKind, FreePrefix, Validity};
 use rand::Rng;
 
-use super::support::{World, id, rng, robot_instance, small};
+use super::support::{World, called, id, rng, robot_instance, small};
 
-/// One instance of a chain: its label, where it leads, and how much of it is free.
+/// One instance of a chain: its primitive, where it leads, and how much of it is free.
 #[derive(Clone, Copy)]
 struct Link(&'static str, [f64; 2], f64);
 
@@ -31,8 +31,8 @@ fn blame() -> Blame {
 struct Chain(Vec<Link>);
 
 impl Primitive<World> for Chain {
-    fn name(&self) -> &'static str {
-        "Chain"
+    fn id(&self) -> PrimitiveId {
+        called("Chain")
     }
 
     fn useful(&self, _: &World, _: &State<World>, _: &PartialState<World>) -> bool {
@@ -48,14 +48,14 @@ impl Primitive<World> for Chain {
     ) -> Result<Instances<World>, Infeasible> {
         let mut here = from.clone();
         let mut instances = Vec::new();
-        for Link(label, to, _) in &self.0 {
+        for Link(primitive, to, _) in &self.0 {
             let mut there = State { robot: *to, ..here.clone() };
             let mut moves = ComponentSet::ROBOT;
-            if *label == "push" {
+            if *primitive == "push" {
                 there.objects[0][0] += 0.1;
                 moves = moves.with(ComponentId::Object(id(0)));
             }
-            instances.push(Instance { label, moves, ..robot_instance(&here, &there) });
+            instances.push(Instance { primitive: called(primitive), moves, ..robot_instance(&here, &there) });
             here = there;
         }
         Ok(instances)
@@ -75,9 +75,9 @@ impl Validity<World> for Known {
     }
 
     fn free_prefix(&self, m: &World, instance: &Instance<World>, from: &State<World>) -> FreePrefix {
-        self.asked.lock().unwrap().push(instance.label);
+        self.asked.lock().unwrap().push(instance.primitive.name());
         let end = instance.at(m, 1.0, from).robot;
-        let is_it = |link: &&Link| link.0 == instance.label && link.1 == end;
+        let is_it = |link: &&Link| link.0 == instance.primitive.name() && link.1 == end;
         match self.links.iter().find(is_it).map_or(1.0, |link| link.2) {
             1.0 => FreePrefix::FREE,
             fraction => FreePrefix::blocked(fraction, blame()),
@@ -92,8 +92,8 @@ struct Around {
 }
 
 impl Reroute<World> for Around {
-    fn is_free_to_turn(&self, instance: &Instance<World>) -> bool {
-        instance.label == "go"
+    fn is_free_to_turn(&self, _: &World, instance: &Instance<World>) -> bool {
+        instance.primitive.name() == "go"
     }
 
     fn reroute(
@@ -108,7 +108,7 @@ impl Reroute<World> for Around {
         self.calls.fetch_add(1, Ordering::SeqCst);
         let there = instance.at(m, 1.0, from);
         if self.finds {
-            Ok(Instance { label: "around", ..robot_instance(from, &there) })
+            Ok(Instance { primitive: called("around"), ..robot_instance(from, &there) })
         } else {
             Err(NoWay::WithAnyCare)
         }
@@ -125,7 +125,7 @@ struct Seen {
 
 impl Seen {
     fn labels(&self) -> Vec<&'static str> {
-        let mut labels: Vec<_> = self.extension.reached.iter().map(|r| r.instance.label).collect();
+        let mut labels: Vec<_> = self.extension.reached.iter().map(|r| r.instance.primitive.name()).collect();
         labels.dedup();
         labels
     }

@@ -23,7 +23,7 @@ use darrt_core::tree::{Edge, NodeId, Tree};
 use darrt_core::validity::{Blame, BlockKind, FreePrefix, Validity};
 use rand::Rng;
 
-use super::support::{World, id, options, rng, robot_instance, small};
+use super::support::{World, called, id, options, rng, robot_instance, small};
 
 const DEFER: ExtendOptions = ExtendOptions { spacing_m: 0.1, max_depth: 20, defer: true, step_m: None };
 
@@ -56,8 +56,8 @@ fn walled() -> Problem<World> {
 struct Above;
 
 impl Reroute<World> for Above {
-    fn is_free_to_turn(&self, instance: &Instance<World>) -> bool {
-        instance.label == "Transit"
+    fn is_free_to_turn(&self, _: &World, instance: &Instance<World>) -> bool {
+        instance.primitive.name() == "Transit"
     }
 
     fn reroute(
@@ -95,7 +95,7 @@ fn a_blocked_motion_goes_another_way_or_is_named() {
     let straight = extender(None);
     match settle(&straight, &start, steps(&straight), &mut rng(0)) {
         Err(Unsettled::Blocked(instance, blame)) => {
-            assert_eq!(instance.label, "Transit");
+            assert_eq!(instance.primitive.name(), "Transit");
             assert!(blame.to_string().contains("robot against obstacle"), "{blame}");
         }
         other => panic!("{other:?}"),
@@ -128,7 +128,7 @@ impl Validity<World> for Wary {
     }
 
     fn free_prefix_with(&self, care: usize, _: &World, instance: &Instance<World>, _: &State<World>) -> FreePrefix {
-        match (care, instance.label) {
+        match (care, instance.primitive.name()) {
             (0, _) | (1, "narrow") | (_, "wide") => FreePrefix::FREE,
             _ => {
                 let (first, second) = ("robot".into(), "margin".into());
@@ -142,8 +142,8 @@ impl Validity<World> for Wary {
 struct Finds([Option<&'static str>; 3]);
 
 impl Reroute<World> for Finds {
-    fn is_free_to_turn(&self, instance: &Instance<World>) -> bool {
-        instance.label == "go"
+    fn is_free_to_turn(&self, _: &World, instance: &Instance<World>) -> bool {
+        instance.primitive.name() == "go"
     }
 
     fn reroute(
@@ -155,7 +155,8 @@ impl Reroute<World> for Finds {
         from: &State<World>,
         _: &mut dyn Rng,
     ) -> Result<Instance<World>, NoWay> {
-        let found = self.0[care].map(|label| Instance { label, ..robot_instance(from, &instance.at(m, 1.0, from)) });
+        let found = self.0[care]
+            .map(|name| Instance { primitive: called(name), ..robot_instance(from, &instance.at(m, 1.0, from)) });
         found.ok_or(NoWay::WithThisCare)
     }
 }
@@ -167,12 +168,15 @@ fn what_may_turn_aside_goes_with_as_much_care_as_a_way_is_found_for() {
     let problem = Problem::new(parts).unwrap();
     let start = problem.start().clone();
     let there = State { robot: [1.0, 0.3], ..start.clone() };
-    let settled = |label, finds| {
-        let instance = Arc::new(Instance { label, ..robot_instance(&start, &there) });
+    let settled = |name, finds| {
+        let instance = Arc::new(Instance { primitive: called(name), ..robot_instance(&start, &there) });
         let reroute = Finds(finds);
         let extender =
             Extender { problem: &problem, options: &DEFER, reroute: Some(&reroute), interrupt: Interrupt::NEVER };
-        settle(&extender, &start, [Step { instance, until: 1.0, primitive: 0 }], &mut rng(0)).unwrap()[0].instance.label
+        settle(&extender, &start, [Step { instance, until: 1.0, primitive: 0 }], &mut rng(0)).unwrap()[0]
+            .instance
+            .primitive
+            .name()
     };
     assert_eq!(settled("wide", [None; 3]), "wide");
     assert_eq!(settled("go", [None, Some("narrow"), Some("wide")]), "wide");

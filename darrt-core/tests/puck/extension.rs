@@ -24,7 +24,7 @@ fn a_blocked_extension_keeps_all_states_up_to_the_wall() {
     let options = ExtendOptions { spacing_m: 0.05, ..ExtendOptions::default() };
     let e = extend_towards(&problem, &options, problem.start(), &target, &mut rng(0));
     assert!(!e.is_met);
-    let labels: Vec<_> = e.reached.iter().map(|r| r.instance.label).collect();
+    let labels: Vec<_> = e.reached.iter().map(|r| r.instance.primitive.name()).collect();
     assert_eq!(labels.iter().filter(|l| **l == "Transit").count(), 5, "0.23 m in steps of 0.05 m: {labels:?}");
     assert!(labels.windows(2).all(|w| w[0] == w[1] || w == ["Transit", "Push"]));
     let mut before = problem.start().clone();

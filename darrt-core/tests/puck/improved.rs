@@ -88,7 +88,7 @@ fn a_puck_that_nobody_asks_for_is_not_pushed() {
     let plan = Plan::new(problem.start().clone(), steps);
     assert!(problem.verifier().verify(m, problem.start(), problem.goal(), &plan).is_ok());
     let new = improved(&problem, &plan, &improvement(4, 0), 1);
-    let labels: Vec<_> = new.steps().iter().map(|step| step.instance.label).collect();
+    let labels: Vec<_> = new.steps().iter().map(|step| step.instance.primitive.name()).collect();
     assert_eq!(labels, ["Transit", "Push"]);
 }
 

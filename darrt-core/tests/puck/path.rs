@@ -4,7 +4,7 @@ use darrt_core::extend::{ExtendOptions, extend_towards};
 use darrt_core::observe::accounts::Bucket;
 use darrt_core::partial::PartialState;
 use darrt_core::path::{Path, PathEnd, Trial, path};
-use darrt_core::primitive::{Infeasible, Instances, Primitive};
+use darrt_core::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use darrt_core::problem::Problem;
 use darrt_core::state::State;
 use darrt_core::testing::puck::{Point, Setup};
@@ -121,8 +121,8 @@ fn the_buckets_tell_who_got_how_far() {
 struct Walled(BlockKind);
 
 impl Primitive<World> for Walled {
-    fn name(&self) -> &'static str {
-        "Walled"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(24, "Walled")
     }
 
     fn useful(&self, _: &World, _: &State<World>, _: &PartialState<World>) -> bool {

@@ -31,10 +31,10 @@ fn chain(m: &World, from: &State<World>, instances: &Instances<World>) -> Vec<St
     let mut states = vec![from.clone()];
     for instance in instances {
         let before = states.last().unwrap().clone();
-        assert_eq!(instance.at(m, 0.0, from), before, "{} starts elsewhere", instance.label);
+        assert_eq!(instance.at(m, 0.0, from), before, "{} starts elsewhere", instance.primitive);
         let after = instance.at(m, 1.0, from);
         for object in m.ids().filter(|o| !instance.moves.contains(ComponentId::Object(*o))) {
-            assert_eq!(after.object(object), before.object(object), "{} moves {object:?}", instance.label);
+            assert_eq!(after.object(object), before.object(object), "{} moves {object:?}", instance.primitive);
         }
         states.push(after);
     }
@@ -76,7 +76,7 @@ fn a_push_keeps_the_contact_and_the_ray() {
     let (m, from) = (&parts.domain, &parts.start);
     let target = PartialState::anywhere(m).with_object(id(0), [2.6, 2.3]);
     let instances = Push.propagate(m, from, &target, &mut rng(0)).unwrap();
-    let labels: Vec<_> = instances.iter().map(|i| i.label).collect();
+    let labels: Vec<_> = instances.iter().map(|i| i.primitive.name()).collect();
     assert_eq!(labels, ["Transit", "Push"]);
     for i in 0..=50_u8 {
         let state = instances[1].at(m, f64::from(i) / 50.0, from);

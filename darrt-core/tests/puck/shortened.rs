@@ -88,7 +88,7 @@ impl Validity<World> for OneWay {
 
     fn free_prefix(&self, m: &World, instance: &Instance<World>, from: &State<World>) -> FreePrefix {
         let end = instance.at(m, 1.0, from);
-        let is_allowed = match instance.label {
+        let is_allowed = match instance.primitive.name() {
             "Push" if Some(end.objects[0]) == self.barred => false,
             "Push" => end.objects[0] != GOAL || from.objects[0] == LAST_STOP,
             _ => end.mode.touching.is_none() || from.objects[0] != LAST_STOP || from.robot == BESIDE,

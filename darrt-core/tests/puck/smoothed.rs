@@ -95,7 +95,7 @@ fn smoothed(problem: &Problem<World>, plan: &Plan<World>, attempts: usize) -> Pl
 }
 
 fn labels(plan: &Plan<World>) -> Vec<&'static str> {
-    plan.steps().iter().map(|step| step.instance.label).collect()
+    plan.steps().iter().map(|step| step.instance.primitive.name()).collect()
 }
 
 #[test]
@@ -157,8 +157,9 @@ fn what_is_carried_is_not_carried_to_and_fro() {
     let picks = |seed| {
         let reached =
             extender(&problem, &DEFER).extend(problem.start(), &puck(m, 0, [2.4, 1.0]), &mut rng(seed)).reached;
-        (reached.iter().map(|r| r.instance.label).collect::<Vec<_>>() == ["Transit", "Pick", "Carry", "Place"])
-            .then_some(reached)
+        (reached.iter().map(|r| r.instance.primitive.name()).collect::<Vec<_>>()
+            == ["Transit", "Pick", "Carry", "Place"])
+        .then_some(reached)
     };
     let reached = (0..).find_map(picks).unwrap();
     let mut steps: Vec<_> = (reached.into_iter().take(2))
@@ -169,7 +170,7 @@ fn what_is_carried_is_not_carried_to_and_fro() {
         // It may also let go of the puck.
         let carries = |seed| {
             let reached = extender(&problem, &DEFER).extend(&here, &target, &mut rng(seed)).reached;
-            reached.first().is_some_and(|first| first.instance.label == "Carry").then_some(reached)
+            reached.first().is_some_and(|first| first.instance.primitive.name() == "Carry").then_some(reached)
         };
         let reached = (0..).find_map(carries).unwrap();
         here = reached.last().unwrap().state.clone();

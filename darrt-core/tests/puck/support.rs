@@ -8,7 +8,7 @@ use darrt_core::extend::ExtendOptions;
 use darrt_core::motion::{Instance, Waypoints};
 use darrt_core::observe::{Event, Observer, Silent};
 use darrt_core::partial::PartialState;
-use darrt_core::primitive::{Infeasible, Instances, Primitive};
+use darrt_core::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use darrt_core::problem::Problem;
 use darrt_core::random::{Purpose, Stream, stream};
 use darrt_core::sample::{GoalBiased, RobotOrObjects, Sampler};
@@ -87,6 +87,12 @@ impl<F: FnMut(&Event<'_>) -> ControlFlow<()> + Send> Observer for Listener<F> {
     }
 }
 
+/// Another id for every name of these tests.
+pub(crate) fn called(name: &'static str) -> PrimitiveId {
+    let index = name.bytes().fold(7_u16, |sum, byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
+    PrimitiveId::new(index, name)
+}
+
 /// A primitive made of two functions.
 pub(crate) struct Made<U, P> {
     pub(crate) name: &'static str,
@@ -100,8 +106,8 @@ where
     U: Fn(&State<World>) -> bool + Send + Sync,
     P: Fn(&State<World>) -> Vec<Point> + Send + Sync,
 {
-    fn name(&self) -> &'static str {
-        self.name
+    fn id(&self) -> PrimitiveId {
+        called(self.name)
     }
 
     fn useful(&self, _: &World, from: &State<World>, _: &PartialState<World>) -> bool {
@@ -130,7 +136,7 @@ where
 pub(crate) fn robot_instance(from: &State<World>, to: &State<World>) -> Instance<World> {
     let motion = Waypoints::new(vec![from.clone(), to.clone()], &[1.0], from.mode.clone()).unwrap();
     Instance {
-        label: "made",
+        primitive: called("made"),
         motion: Box::new(motion),
         contacts: ComponentSet::EMPTY,
         moves: ComponentSet::ROBOT,

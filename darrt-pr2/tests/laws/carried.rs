@@ -2,9 +2,9 @@
 
 use darrt_core::budget::Cancel;
 use darrt_core::observe::Silent;
-use darrt_pr2::plan_file::PlanFile;
-use darrt_pr2::planning::{PlanRequest, plan};
-use darrt_pr2::problem_file::builtin;
+use darrt_pr2::problems::builtin;
+use darrt_task::plan_file::PlanFile;
+use darrt_task::planning::{PlanRequest, plan};
 use nalgebra::{Isometry3, Vector3};
 
 /// With one of these the bowl is carried upside down where that is allowed.
@@ -15,7 +15,8 @@ fn most_lean_deg(limit_deg: f64, seeds: std::ops::Range<u64>) -> f64 {
     let of_plan = |seed| {
         let mut problem = builtin("bowl").unwrap();
         problem.objects[0].max_tilt_deg = Some(limit_deg);
-        let result = plan(&PlanRequest::new(problem, seed), &Cancel::new(), &mut Silent).unwrap();
+        let result =
+            plan(&darrt_pr2::registry(), &PlanRequest::new(problem, seed), &Cancel::new(), &mut Silent).unwrap();
         lean_deg(&result.plan.unwrap())
     };
     seeds.map(of_plan).fold(0.0, f64::max)

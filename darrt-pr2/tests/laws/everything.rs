@@ -4,12 +4,11 @@ use darrt_core::laws::everything::Effort;
 use darrt_core::laws::{Report, SpaceClaims, Subjects, ValidityClaims, check_everything};
 use darrt_core::partial::PartialState;
 use darrt_core::validity::Validity as _;
-use darrt_pr2::planning::strategy;
-use darrt_pr2::problem_file::{DistanceName, SamplerName};
-use darrt_pr2::world::{World, WorldState};
+use darrt_pr2::{World, WorldState};
 use darrt_primitives::laws::body_travel;
 use darrt_primitives::mode::Contacts;
 use darrt_primitives::testing::scene_oracle::SceneOracle;
+use darrt_task::planning::{PlanRequest, strategy};
 
 use crate::support::{file, obstacles, problem};
 
@@ -30,7 +29,7 @@ fn everything_of_a_problem_keeps_its_laws() -> Result<(), Box<Report>> {
     let validity = ValidityClaims { tight_m: 0.21, same_names: false, between: 8, anywhere: 1 };
     let effort = Effort { cases: 24, calls: 200, iterations: 12, ..Effort::default() };
     let subjects = Subjects::of(&problem)
-        .strategy(strategy(&file(name).sampling, SamplerName::default(), DistanceName::default()).unwrap())
+        .strategy(strategy(&darrt_pr2::registry(), &PlanRequest::new(file(name), 0)).unwrap())
         .oracle(move |m, state| oracle.check(m, state, &Contacts::default()).is_ok())
         .excuse(is_excused)
         .travel(body_travel)

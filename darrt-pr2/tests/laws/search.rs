@@ -8,10 +8,10 @@ use darrt_core::laws::{
 };
 use darrt_core::solve::SolveOptions;
 use darrt_core::testing::strategies::{config, seeds, targets};
-use darrt_pr2::planning::strategy;
-use darrt_pr2::problem_file::{DistanceName, SamplerName};
-use darrt_pr2::world::World;
+use darrt_pr2::World;
 use darrt_primitives::testing::strategies::{any_mode, resting};
+use darrt_task::planning::{PlanRequest, strategy};
+use darrt_task::problem_file::SamplerName;
 use proptest::prelude::*;
 
 use crate::support::{PROBLEMS, file, problem};
@@ -53,9 +53,12 @@ fn the_nearest_node_is_the_nearest() {
 fn samplers_keep_their_laws() {
     for name in PROBLEMS {
         let problem = problem(name);
-        let sampling = file(name).sampling;
-        for sampler in [SamplerName::RobotOrObjects, SamplerName::RandomSubset, SamplerName::Full] {
-            let strategy = strategy(&sampling, sampler, DistanceName::default()).unwrap();
+        for sampler in [SamplerName::ROBOT_OR_OBJECTS, SamplerName::RANDOM_SUBSET, SamplerName::FULL] {
+            let strategy = strategy(
+                &darrt_pr2::registry(),
+                &PlanRequest { sampler: Some(sampler), ..PlanRequest::new(file(name), 0) },
+            )
+            .unwrap();
             let (m, sampler) = (problem.domain(), &*strategy.sampler);
             proptest!(config(32, REGRESSIONS), |(seed in seeds())| {
                 check_sampler(m, sampler, problem.goal(), seed)?;
@@ -82,7 +85,7 @@ fn goals_keep_their_laws() {
 fn the_search_keeps_its_laws() {
     for name in ["simple-plate", "plate3"] {
         let problem = problem(name);
-        let strategy = strategy(&file(name).sampling, SamplerName::default(), DistanceName::default()).unwrap();
+        let strategy = strategy(&darrt_pr2::registry(), &PlanRequest::new(file(name), 0)).unwrap();
         proptest!(config(1, REGRESSIONS), |(seed in seeds(), restart in prop::option::of(8_u64..12))| {
             let budget = Budget { iterations: Some(16), ..Budget::default() };
             let options = SolveOptions { seed, budget, restart_iterations: restart, threads: 1 };

@@ -3,11 +3,13 @@
 use darrt_core::problem::Problem;
 use darrt_core::state::State;
 use darrt_geom::scene::FixedBody;
-use darrt_pr2::planning::prepare;
-use darrt_pr2::problem_file::{ProblemFile, builtin};
-use darrt_pr2::world::{self, World, WorldState};
+use darrt_pr2::problems::builtin;
+use darrt_pr2::{World, WorldState};
 use darrt_primitives::mode::Contacts;
 use darrt_primitives::testing::strategies::any_mode;
+use darrt_task::planning::prepare;
+use darrt_task::problem_file::ProblemFile;
+use darrt_task::world;
 use proptest::prelude::*;
 
 /// One problem with a plate, one with a bowl, one with everything.
@@ -20,12 +22,12 @@ pub(crate) fn file(name: &str) -> ProblemFile {
 
 /// An embedded problem, ready to be solved.
 pub(crate) fn problem(name: &str) -> Problem<World> {
-    prepare(&file(name)).unwrap().problem
+    prepare(&darrt_pr2::registry(), &file(name)).unwrap().problem
 }
 
 /// The fixed bodies of a problem.
 pub(crate) fn obstacles(name: &str) -> Vec<FixedBody> {
-    world::build(&file(name)).unwrap().scene.bodies().to_vec()
+    world::build(&darrt_pr2::registry(), &file(name)).unwrap().scene.bodies().to_vec()
 }
 
 /// States of every kind that the problem's own validity accepts.

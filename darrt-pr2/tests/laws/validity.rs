@@ -7,13 +7,13 @@ use darrt_core::laws::{ValidityClaims, check_against_oracle, check_enlarged, che
 use darrt_core::random::{Purpose, stream};
 use darrt_core::testing::strategies::{config, tasks_from};
 use darrt_core::validity::Validity as _;
-use darrt_pr2::planning::prepare;
-use darrt_pr2::problem_file::{ProblemFile, ShapeSpec};
-use darrt_pr2::world;
 use darrt_primitives::mode::Contacts;
 use darrt_primitives::testing::scene_oracle::SceneOracle;
 use darrt_primitives::testing::strategies::any_mode;
 use darrt_primitives::validity::SceneValidity;
+use darrt_task::planning::prepare;
+use darrt_task::problem_file::{ProblemFile, ShapeSpec};
+use darrt_task::world;
 use proptest::prelude::*;
 
 use crate::support::{PROBLEMS, file, obstacles, problem, valid_states};
@@ -115,7 +115,8 @@ fn with_another_obstacle(name: &str) -> ProblemFile {
 
 #[test]
 fn more_obstacles_forbid_more() {
-    let (with, without) = (prepare(&with_another_obstacle("plate1")).unwrap().problem, problem("plate1"));
+    let (with, without) =
+        (prepare(&darrt_pr2::registry(), &with_another_obstacle("plate1")).unwrap().problem, problem("plate1"));
     let differ = Cell::new(0);
     let m = without.domain();
     proptest!(config(192, REGRESSIONS), |(state in valid_states(&without))| {
@@ -150,7 +151,8 @@ fn with_larger_obstacles(name: &str, by: f64) -> ProblemFile {
 #[test]
 fn larger_obstacles_forbid_more() {
     for name in PROBLEMS {
-        let (larger, given) = (world::build(&with_larger_obstacles(name, 0.04)).unwrap(), problem(name));
+        let (larger, given) =
+            (world::build(&darrt_pr2::registry(), &with_larger_obstacles(name, 0.04)).unwrap(), problem(name));
         let larger = SceneValidity::new(&larger.world);
         let differ = Cell::new(0);
         let m = given.domain();

@@ -6,12 +6,13 @@ use darrt_pr2::arm::{Arm, ArmConfiguration, LimitKind, Side, Solutions};
 use darrt_pr2::forward::{ArmChain, world_from_base};
 use darrt_pr2::gripper;
 use darrt_pr2::model::{Pr2Model, URDF, WholeBody};
-use darrt_pr2::plan_file::{
+use darrt_pr2::postures::ArmPosture;
+use darrt_primitives::kinematics::RobotDescription;
+use darrt_primitives::primitive::STANDARD;
+use darrt_task::plan_file::{
     AllowedContact, ContactReason, Hold, JointTable, PlanFile, PlanFormat, PlannerFacts, Pose, Step, VERSION, Waypoint,
 };
-use darrt_pr2::postures::ArmPosture;
-use darrt_pr2::problem_file::{PrimitiveName, ProblemFile};
-use darrt_primitives::kinematics::RobotDescription;
+use darrt_task::problem_file::{PrimitiveName, ProblemFile};
 use nalgebra::{Isometry3, Vector3};
 
 /// The body that carries the plate.
@@ -42,7 +43,7 @@ impl Builder {
         let table = JointTable::new(&RobotDescription::from_text(URDF).unwrap(), model.tree());
         let mut body = WholeBody::at_rest();
         body.base = problem.robot.base;
-        body.torso_m = problem.robot.torso_m;
+        body.torso_m = problem.robot.torso_m.unwrap();
         body.arms = [q, ArmPosture::Side.values(Side::Left)];
         body.finger_angles = [gripper::finger_angle(gap), 0.0];
         let plate = problem.geometry().unwrap().objects[0].world_from_object;
@@ -82,9 +83,9 @@ impl Builder {
         let holds = self.held.map(|pose| Hold { object: self.object.clone(), tool_from_object: pose.into() });
         let first = self.waypoint();
         self.steps.push(Step {
-            primitive,
+            primitive: primitive.clone(),
             object: object.map(str::to_owned),
-            pushes: (primitive == PrimitiveName::Push).then(|| self.object.clone()),
+            pushes: (primitive == PrimitiveName::PUSH).then(|| self.object.clone()),
             allowed_contacts: Vec::new(),
             holds,
             waypoints: vec![first],
@@ -102,7 +103,7 @@ impl Builder {
 
     /// The fingers may touch the plate in this step.
     pub(crate) fn touching(&mut self, reason: ContactReason) -> &mut Self {
-        self.allow(AllowedContact::fingers(Side::Right, &self.object, reason))
+        self.allow(AllowedContact::fingers(&finger_links(), &self.object, reason))
     }
 
     /// The object may touch the body that carries it.
@@ -203,12 +204,18 @@ impl Builder {
             problem: problem.clone(),
             seed: 0,
             planner: PlannerFacts {
-                sampler: problem.sampling.sampler,
-                distance: problem.sampling.distance,
+                sampler: problem.sampling.sampler.clone(),
+                distance: problem.sampling.distance.clone(),
                 ..PlannerFacts::default()
             },
+            contracts: STANDARD.iter().map(|(id, contract)| (PrimitiveName::new(id.name()), *contract)).collect(),
             start: self.start.clone(),
             steps: self.steps.clone(),
         }
     }
+}
+
+/// The links of the right hand that may touch things.
+pub(crate) fn finger_links() -> [String; 4] {
+    ["l_finger", "r_finger", "l_finger_tip", "r_finger_tip"].map(|name| format!("r_gripper_{name}_link"))
 }

@@ -2,6 +2,8 @@
 
 #[path = "wrong/collisions.rs"]
 mod collisions;
+#[path = "wrong/contracts.rs"]
+mod contracts;
 #[path = "wrong/ends.rs"]
 mod ends;
 #[path = "wrong/hold.rs"]
@@ -13,9 +15,10 @@ mod margins;
 #[path = "wrong/motions.rs"]
 mod motions;
 
-use darrt_pr2::plan_file::{PlanFile, Pose, Waypoint};
-use darrt_pr2::problem_file::{Obstacle, ShapeSpec};
-use darrt_pr2::verify::{Refusal, RefusalKind, verify};
+use darrt_pr2::verify;
+use darrt_task::plan_file::{PlanFile, Pose, Waypoint};
+use darrt_task::problem_file::{Obstacle, ShapeSpec};
+use darrt_task::verify::{Refusal, RefusalKind};
 
 use crate::builder::PLATE;
 
@@ -24,7 +27,7 @@ fn refused(mut plan: PlanFile, step: u32, kind: RefusalKind, edit: impl FnOnce(&
     edit(&mut plan);
     let refusal = verify(&plan).expect_err("the plan is wrong");
     assert_eq!((refusal.step.unwrap_or(0), refusal.kind), (step, kind), "{refusal}");
-    assert_eq!(refusal.primitive, refusal.step.map(|step| plan.steps[step as usize - 1].primitive));
+    assert_eq!(refusal.primitive, refusal.step.map(|step| plan.steps[step as usize - 1].primitive.clone()));
     assert!((0.0..=1.0).contains(&refusal.time), "{refusal}");
     refusal
 }

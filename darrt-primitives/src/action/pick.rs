@@ -6,17 +6,18 @@ use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
 use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
+use super::Chain;
 use super::line::{self, follow_in_room, room_for_hand};
 use super::push::approach;
 use super::retreat::retreat;
 use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
-use super::{Chain, label};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::grasp::hold::Hold;
 use crate::grasp::rim::{rim_is_graspable, rim_overhangs};
 use crate::grasp::{Grasp, GraspKind};
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Held, TouchReason};
+use crate::primitive;
 use crate::tabletop::{Movable, Tabletop, TabletopState};
 
 /// The arm's way of one pick.
@@ -207,7 +208,7 @@ fn assemble<M: Manipulator>(
         way.up.iter().map(|arm| Waypoint { robot: Configuration { base: way.base, arm: *arm }, pushed: 0.0 }).collect();
     let motion = ArmMotion::new(m, &chain.end, &waypoints, Carried::Held(held), mode.clone(), mode);
     let instance = Instance {
-        label: label::PICK,
+        primitive: primitive::PICK,
         motion: Box::new(motion),
         contacts: Contacts { fingers: Some((object, TouchReason::Grasp)), support: Some((object, support)) },
         moves: ComponentSet::ROBOT.with(ComponentId::Object(object)),

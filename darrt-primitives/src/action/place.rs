@@ -7,16 +7,17 @@ use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
 use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
+use super::Chain;
 use super::line::{follow_in_room, room_for_hand};
 use super::retreat::retreat;
 use super::stance::{Care, Probe, Refused, Wanted, stance};
 use super::travel::travel;
-use super::{Chain, label};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::length_range::LengthRange;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Held, SurfaceId, TouchReason};
 use crate::object_space::upright;
+use crate::primitive;
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// A target whose bottom is this near to a surface is meant to stand on it; metres (the authors' `TABLE_CONTAINS`).
@@ -172,7 +173,7 @@ fn assemble<M: Manipulator>(
     let during = chain.end.mode.clone();
     let motion = ArmMotion::new(m, &chain.end, &waypoints, Carried::Held(*held), during, after);
     let instance = Instance {
-        label: label::PLACE,
+        primitive: primitive::PLACE,
         motion: Box::new(motion),
         contacts: contacts(held.object, surface),
         moves: ComponentSet::ROBOT.with(ComponentId::Object(held.object)),

@@ -6,15 +6,16 @@ use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
 use nalgebra::{Isometry3, Point2};
 use rand::{Rng, RngExt};
 
+use super::Chain;
 use super::line::{Line, follow_in_room, follow_path, moved};
 use super::retreat::retreat;
 use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
 use super::travel::travel;
-use super::{Chain, label};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::contact::HandStance;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, TouchReason};
+use crate::primitive;
 use crate::tabletop::{Tabletop, TabletopState};
 
 mod course;
@@ -219,7 +220,7 @@ fn assemble<M: Manipulator>(
     let carried = Carried::Pushed(object, push.course.slide.at(reached));
     let motion = ArmMotion::new(m, &chain.end, &waypoints, carried, mode.clone(), mode);
     let instance = Instance {
-        label: label::PUSH,
+        primitive: primitive::PUSH,
         motion: Box::new(motion),
         contacts: contacts(object),
         moves: ComponentSet::ROBOT.with(ComponentId::Object(object)),
@@ -248,7 +249,8 @@ pub(super) fn approach<M: Manipulator>(
         chain.end.mode.opened_to(gap_m).and_then(|mode| mode.engaged_with(object)).ok_or(Infeasible::NoContact)?;
     let waypoints: Vec<_> =
         rest.iter().map(|arm| Waypoint { robot: Configuration { base, arm: *arm }, pushed: 0.0 }).collect();
-    let mut instance = super::travel::carry(m, chain, &waypoints, &mode, label::STRAIGHT_LINE_ARM_TRANSIT, contacts);
+    let mut instance =
+        super::travel::carry(m, chain, &waypoints, &mode, primitive::STRAIGHT_LINE_ARM_TRANSIT, contacts);
     instance.object = Some(object);
     chain.push(m, instance);
     Ok(())

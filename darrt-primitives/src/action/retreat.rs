@@ -5,13 +5,14 @@ use darrt_core::primitive::Infeasible;
 use darrt_core::state::ComponentSet;
 use nalgebra::Vector3;
 
+use super::Chain;
 use super::line::{cares, follow_in_room};
 use super::stance::{Probe, Refused};
-use super::{Chain, label};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::length_range::LengthRange;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, TouchReason};
+use crate::primitive;
 use crate::tabletop::Tabletop;
 
 /// If the hand stands at an object, backs it out along its own axis, as far as the range wants and there is room; else does
@@ -40,7 +41,7 @@ pub fn retreat<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>, by_m: Leng
         line.arms.iter().map(|arm| Waypoint { robot: Configuration { base, arm: *arm }, pushed: 0.0 }).collect();
     let motion = ArmMotion::new(m, here, &waypoints, Carried::Nothing, here.mode.clone(), after);
     let instance = Instance {
-        label: label::STRAIGHT_LINE_ARM_TRANSIT,
+        primitive: primitive::STRAIGHT_LINE_ARM_TRANSIT,
         motion: Box::new(motion),
         contacts: Contacts { fingers: Some((object, TouchReason::Retreat)), support: None },
         moves: ComponentSet::ROBOT,

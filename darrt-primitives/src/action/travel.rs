@@ -1,14 +1,16 @@
 //! Going to a configuration of base and arm, alone or with an object in the hand.
 
 use darrt_core::motion::Instance;
+use darrt_core::primitive::PrimitiveId;
 use darrt_core::state::{ComponentId, ComponentSet};
 use rand::Rng;
 
+use super::Chain;
 use super::fold::{Order, order};
-use super::{Chain, label};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Mode};
+use crate::primitive;
 use crate::tabletop::Tabletop;
 
 /// Moves base and arm to `target`, never both at once. The arm drives along folded, or what it holds near the robot and
@@ -39,8 +41,9 @@ pub fn travel<M: Manipulator>(
 pub fn arm_to<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>, arm: &M::Joints, gap_m: f64) {
     if chain.end.robot.arm != *arm {
         let robot = Configuration { base: chain.end.robot.base, arm: *arm };
-        let name = if chain.end.mode.held().is_some() { label::ARM_RIGID_TRANSFER } else { label::ARM_TRANSIT };
-        go(m, chain, robot, gap_m, name);
+        let primitive =
+            if chain.end.mode.held().is_some() { primitive::ARM_RIGID_TRANSFER } else { primitive::ARM_TRANSIT };
+        go(m, chain, robot, gap_m, primitive);
     }
 }
 
@@ -48,8 +51,9 @@ pub fn arm_to<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>, arm: &M::Jo
 pub fn base_to<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>, base: &[f64; 3], gap_m: f64) {
     if chain.end.robot.base != *base {
         let robot = Configuration { base: *base, arm: chain.end.robot.arm };
-        let name = if chain.end.mode.held().is_some() { label::BASE_RIGID_TRANSFER } else { label::BASE_TRANSIT };
-        go(m, chain, robot, gap_m, name);
+        let primitive =
+            if chain.end.mode.held().is_some() { primitive::BASE_RIGID_TRANSFER } else { primitive::BASE_TRANSIT };
+        go(m, chain, robot, gap_m, primitive);
     }
 }
 
@@ -58,11 +62,11 @@ fn go<M: Manipulator>(
     chain: &mut Chain<M>,
     robot: Configuration<M::Joints>,
     gap_m: f64,
-    label: &'static str,
+    primitive: PrimitiveId,
 ) {
     let here = &chain.end;
     let mode = here.mode.opened_to(gap_m).unwrap_or_else(|| here.mode.clone());
-    let instance = carry(m, chain, &[Waypoint { robot, pushed: 0.0 }], &mode, label, Contacts::default());
+    let instance = carry(m, chain, &[Waypoint { robot, pushed: 0.0 }], &mode, primitive, Contacts::default());
     chain.push(m, instance);
 }
 
@@ -72,12 +76,12 @@ pub(super) fn carry<M: Manipulator>(
     chain: &Chain<M>,
     waypoints: &[Waypoint<M::Joints>],
     mode: &Mode,
-    label: &'static str,
+    primitive: PrimitiveId,
     contacts: Contacts,
 ) -> Instance<Tabletop<M>> {
     let held = mode.held().copied();
     let moves = held.map_or(ComponentSet::ROBOT, |h| ComponentSet::ROBOT.with(ComponentId::Object(h.object)));
     let carried = held.map_or(Carried::Nothing, Carried::Held);
     let motion = ArmMotion::new(m, &chain.end, waypoints, carried, mode.clone(), mode.clone());
-    Instance { label, motion: Box::new(motion), contacts, moves, object: held.map(|h| h.object), reversible: true }
+    Instance { primitive, motion: Box::new(motion), contacts, moves, object: held.map(|h| h.object), reversible: true }
 }

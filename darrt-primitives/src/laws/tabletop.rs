@@ -138,7 +138,7 @@ pub fn check_tabletop_instance<M: Manipulator>(
         trial.hand()
     };
     check().map_err(|broken: Broken| {
-        let broken = broken.of(format_args!("instance {:?}", instance.label));
+        let broken = broken.of(format_args!("instance {:?}", instance.primitive));
         broken.replayed_by(|| format!("check_tabletop_instance(&m, &{instance:?}, &{from:?}, &{ts:?}, &{claims:?})"))
     })
 }

@@ -18,7 +18,7 @@ impl<D: Domain> Trial<'_, '_, D> {
     pub(super) fn at_most(&self, instances: &[Instance<D>], end: &State<D>) -> Result<(), Broken> {
         let mut here = self.from.clone();
         for (i, instance) in instances.iter().enumerate() {
-            let of = |broken: Broken| broken.of(format_args!("instance {i} {:?}", instance.label));
+            let of = |broken: Broken| broken.of(format_args!("instance {i} {:?}", instance.primitive));
             let after = instance.at(self.m, 1.0, &here);
             if !self.claims.moves_others {
                 self.moves(instance).map_err(of)?;

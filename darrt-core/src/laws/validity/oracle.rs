@@ -1,5 +1,6 @@
 //! A validity against the user's own slow oracle: a function that says of a state whether it is free.
 
+use crate::primitive::PrimitiveId;
 use rand::RngExt;
 
 use super::{LAX, ORACLE_PREFIX, PURE, STRICT};
@@ -157,7 +158,7 @@ impl<D: Domain> Trial<'_, D> {
             let metres = component_travel(self.m, a, &end);
             let Some(motion) = Waypoints::new(vec![a.clone(), end], &[metres], a.mode.clone()) else { continue };
             let instance = Instance {
-                label: "straight",
+                primitive: PrimitiveId::new(10, "straight"),
                 motion: Box::new(motion),
                 contacts: D::Contacts::default(),
                 moves: ComponentSet::ROBOT,

@@ -106,7 +106,7 @@ pub(super) fn instance_of<D: Domain>(
     motion: impl Motion<D> + 'static,
 ) -> Instance<D> {
     Instance {
-        label: like.label,
+        primitive: like.primitive,
         motion: Box::new(motion),
         contacts: like.contacts.clone(),
         moves,

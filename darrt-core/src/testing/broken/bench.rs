@@ -14,7 +14,7 @@ use rand::{Rng, RngExt};
 use crate::domain::Domain;
 use crate::motion::Instance;
 use crate::partial::PartialState;
-use crate::primitive::{Infeasible, Instances, Primitive};
+use crate::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use crate::space::so2::{turn, wrap};
 use crate::space::{ComponentSpace, GroupSet, Place};
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
@@ -303,8 +303,8 @@ pub struct Act {
 }
 
 impl Primitive<Bench> for Act {
-    fn name(&self) -> &'static str {
-        "Act"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(20, "Act")
     }
 
     fn useful(&self, m: &Bench, from: &State<Bench>, to: &PartialState<Bench>) -> bool {

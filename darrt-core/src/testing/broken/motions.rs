@@ -1,5 +1,6 @@
 //! Broken motions and instances.
 
+use crate::primitive::PrimitiveId;
 use std::fmt;
 
 use rand::Rng;
@@ -60,7 +61,14 @@ pub(super) fn drag(from: &State<Bench>, x: f64) -> Option<Instance<Bench>> {
 /// An instance that needs no contact.
 pub(super) fn instance(motion: impl Motion<Bench> + 'static, moves: ComponentSet) -> Instance<Bench> {
     let contacts = ComponentSet::EMPTY;
-    Instance { label: "reel", motion: Box::new(motion), contacts, moves, object: None, reversible: true }
+    Instance {
+        primitive: PrimitiveId::new(10, "reel"),
+        motion: Box::new(motion),
+        contacts,
+        moves,
+        object: None,
+        reversible: true,
+    }
 }
 
 /// Where all of these motions start.

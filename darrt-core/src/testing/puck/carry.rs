@@ -8,7 +8,7 @@ use super::world::{Grip, Point, PuckWorld};
 use crate::domain::Domain;
 use crate::motion::{Instance, Waypoints};
 use crate::partial::PartialState;
-use crate::primitive::{Infeasible, Instances, Primitive};
+use crate::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 
@@ -19,8 +19,8 @@ use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 pub struct Carry;
 
 impl Primitive<PuckWorld> for Carry {
-    fn name(&self) -> &'static str {
-        "Carry"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(3, "Carry")
     }
 
     fn useful(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> bool {
@@ -47,7 +47,7 @@ impl Primitive<PuckWorld> for Carry {
             return Err(Infeasible::Limits);
         }
         let (carried, end) = carry(from, id, robot, puck).ok_or(Infeasible::Limits)?;
-        let released = to.object(id).and_then(|_| change_grip("Place", &end, id, Grip::Resting));
+        let released = to.object(id).and_then(|_| change_grip(super::Place.id(), &end, id, Grip::Resting));
         Ok(std::iter::once(carried).chain(released).collect())
     }
 }
@@ -66,7 +66,7 @@ fn carry(
     *slot = puck;
     let motion = Waypoints::new(vec![from.clone(), end.clone()], &[length], from.mode.clone())?;
     let instance = Instance {
-        label: "Carry",
+        primitive: PrimitiveId::new(3, "Carry"),
         motion: Box::new(motion),
         contacts: ComponentSet::EMPTY.with(ComponentId::Object(id)),
         moves: ComponentSet::ROBOT.with(ComponentId::Object(id)),

@@ -8,7 +8,7 @@ use super::world::{Grip, PuckWorld};
 use crate::domain::Domain;
 use crate::motion::{Instance, Waypoints};
 use crate::partial::PartialState;
-use crate::primitive::{Infeasible, Instances, Primitive};
+use crate::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 
@@ -18,8 +18,8 @@ use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 pub struct Pick;
 
 impl Primitive<PuckWorld> for Pick {
-    fn name(&self) -> &'static str {
-        "Pick"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(1, "Pick")
     }
 
     fn useful(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> bool {
@@ -43,7 +43,7 @@ impl Primitive<PuckWorld> for Pick {
         }
         let (transit, touching) = approach(m, from, id, contact).ok_or(Infeasible::NoGrasp)?;
         let held = Grip::Held { offset: plane::subtract(at, &contact) };
-        Ok(vec![transit, change_grip("Pick", &touching, id, held).ok_or(Infeasible::NoGrasp)?])
+        Ok(vec![transit, change_grip(self.id(), &touching, id, held).ok_or(Infeasible::NoGrasp)?])
     }
 }
 
@@ -59,7 +59,7 @@ fn candidates<'a>(
 
 /// An instance of no length that changes nothing but the grip on `id`; the robot touches it before or after.
 pub(super) fn change_grip(
-    label: &'static str,
+    primitive: PrimitiveId,
     from: &State<PuckWorld>,
     id: ObjectId,
     grip: Grip,
@@ -68,7 +68,7 @@ pub(super) fn change_grip(
     let mode = from.mode.with_grip(id, grip).touching(touching);
     let end = State { mode, ..from.clone() };
     Some(Instance {
-        label,
+        primitive,
         motion: Box::new(Waypoints::new(vec![from.clone(), end], &[0.0], from.mode.clone())?),
         contacts: ComponentSet::EMPTY.with(ComponentId::Object(id)),
         moves: ComponentSet::EMPTY,

@@ -5,7 +5,7 @@ use rand::Rng;
 use super::pick::change_grip;
 use super::world::{Grip, PuckWorld};
 use crate::partial::PartialState;
-use crate::primitive::{Infeasible, Instances, Primitive};
+use crate::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use crate::state::State;
 
 /// Useful when the held puck is where it should be, or may be anywhere, and something else is not.
@@ -13,8 +13,8 @@ use crate::state::State;
 pub struct Place;
 
 impl Primitive<PuckWorld> for Place {
-    fn name(&self) -> &'static str {
-        "Place"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(2, "Place")
     }
 
     fn useful(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> bool {
@@ -29,6 +29,6 @@ impl Primitive<PuckWorld> for Place {
         _: &mut dyn Rng,
     ) -> Result<Instances<PuckWorld>, Infeasible> {
         let (id, _) = from.mode.held().ok_or(Infeasible::NoGrasp)?;
-        Ok(vec![change_grip("Place", from, id, Grip::Resting).ok_or(Infeasible::NoGrasp)?])
+        Ok(vec![change_grip(self.id(), from, id, Grip::Resting).ok_or(Infeasible::NoGrasp)?])
     }
 }

@@ -8,7 +8,7 @@ use super::world::{Point, PuckWorld};
 use crate::domain::Domain;
 use crate::motion::{Instance, Waypoints};
 use crate::partial::PartialState;
-use crate::primitive::{Infeasible, Instances, Primitive};
+use crate::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 
@@ -18,8 +18,8 @@ use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 pub struct Push;
 
 impl Primitive<PuckWorld> for Push {
-    fn name(&self) -> &'static str {
-        "Push"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(4, "Push")
     }
 
     fn useful(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> bool {
@@ -69,7 +69,7 @@ fn push(m: &PuckWorld, touching: &State<PuckWorld>, id: ObjectId, target: Point)
     let length = plane::distance(at, &target).max(plane::distance(&touching.robot, &end.robot));
     let mode = touching.mode.clone();
     Some(Instance {
-        label: "Push",
+        primitive: PrimitiveId::new(4, "Push"),
         motion: Box::new(Waypoints::new(vec![touching.clone(), end], &[length], mode)?),
         contacts: ComponentSet::EMPTY.with(ComponentId::Object(id)),
         moves: ComponentSet::ROBOT.with(ComponentId::Object(id)),

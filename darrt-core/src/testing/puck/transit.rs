@@ -7,7 +7,7 @@ use super::plane;
 use super::world::{Point, PuckWorld};
 use crate::motion::{Instance, Waypoints};
 use crate::partial::PartialState;
-use crate::primitive::{Infeasible, Instances, Primitive};
+use crate::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 
 /// Useful when all named pucks are where they should be and the robot, which holds nothing, is not
@@ -16,8 +16,8 @@ use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 pub struct Transit;
 
 impl Primitive<PuckWorld> for Transit {
-    fn name(&self) -> &'static str {
-        "Transit"
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::new(0, "Transit")
     }
 
     fn useful(&self, m: &PuckWorld, from: &State<PuckWorld>, to: &PartialState<PuckWorld>) -> bool {
@@ -54,7 +54,7 @@ pub fn drive(
     // It may leave what it touches now.
     let touched = m.ids().filter(|id| Some(*id) == approached || m.gap(from, *id) < CLEARANCE_M);
     let instance = Instance {
-        label: "Transit",
+        primitive: PrimitiveId::new(0, "Transit"),
         contacts: touched.fold(ComponentSet::EMPTY, |set, id| set.with(ComponentId::Object(id))),
         motion: Box::new(Waypoints::new(states, &legs, on_the_way)?),
         moves: ComponentSet::ROBOT,

@@ -1,11 +1,11 @@
 //! Bodies in the way, and contacts that nobody may allow.
 
-use darrt_pr2::arm::Side;
-use darrt_pr2::plan_file::{AllowedContact, ContactReason, Pose, Waypoint};
-use darrt_pr2::verify::{RefusalKind, verify};
+use darrt_pr2::verify;
+use darrt_task::plan_file::{AllowedContact, ContactReason, Pose, Waypoint};
+use darrt_task::verify::RefusalKind;
 
 use super::{about, block, from_here_on, joint, refused, waypoint};
-use crate::builder::{PLATE, TABLE};
+use crate::builder::{PLATE, TABLE, finger_links};
 use crate::plans;
 
 #[test]
@@ -102,7 +102,7 @@ fn contacts_must_be_allowed_and_make_sense() {
     }
     let leg = AllowedContact::support(PLATE, "leg near left");
     refused(plans::carry(), 2, K::AllowedContact, |plan| plan.steps[1].allowed_contacts.push(leg));
-    let fingers = AllowedContact::fingers(Side::Right, PLATE, ContactReason::Grasp);
+    let fingers = AllowedContact::fingers(&finger_links(), PLATE, ContactReason::Grasp);
     refused(plans::wave(), 2, K::AllowedContact, |plan| {
         plan.steps[1].object = Some(PLATE.to_owned());
         plan.steps[1].allowed_contacts = fingers;

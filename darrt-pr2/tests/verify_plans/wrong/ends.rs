@@ -1,8 +1,9 @@
 //! Plans that start or end elsewhere than the problem says.
 
-use darrt_pr2::plan_file::PlanFile;
-use darrt_pr2::problem_file::{GoalState, Region, Symmetry};
-use darrt_pr2::verify::{RefusalKind, verify};
+use darrt_pr2::verify;
+use darrt_task::plan_file::PlanFile;
+use darrt_task::problem_file::{GoalState, Region, Symmetry};
+use darrt_task::verify::RefusalKind;
 
 use super::{about, block, refused};
 use crate::plans;
@@ -13,7 +14,7 @@ fn the_start_is_the_problems() {
     let refusal = refused(plans::push(), 0, K::Start, |plan| plan.problem.objects[0].at[0] += 1e-3);
     assert!(refusal.message.contains("`plate`"), "{refusal}");
     refused(plans::push(), 0, K::Start, |plan| plan.problem.robot.base[2] += 1e-3);
-    refused(plans::push(), 0, K::Start, |plan| plan.problem.robot.torso_m = 0.25);
+    refused(plans::push(), 0, K::Start, |plan| plan.problem.robot.torso_m = Some(0.25));
     refused(plans::push(), 0, K::Start, |plan| plan.problem.robot.other_posture = Some("up".to_owned()));
     refused(plans::push(), 0, K::Start, |plan| plan.problem.robot.joints.as_mut().unwrap()[6] += 1e-6);
     let refusal = refused(plans::push(), 0, K::Problem, |plan| plan.problem.objects[0].on = "shelf".to_owned());

@@ -1,8 +1,9 @@
 //! Hands that cannot hold what they have closed on.
 
-use darrt_pr2::plan_file::PlanFile;
-use darrt_pr2::problem_file::Object;
-use darrt_pr2::verify::{RefusalKind, verify};
+use darrt_pr2::verify;
+use darrt_task::plan_file::PlanFile;
+use darrt_task::problem_file::Object;
+use darrt_task::verify::RefusalKind;
 
 use super::refused;
 use crate::plans::{self, PICK_PLATE};

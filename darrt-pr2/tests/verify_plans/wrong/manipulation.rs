@@ -1,8 +1,9 @@
 //! Pushes, grasps, places and hands that cannot be.
 
-use darrt_pr2::plan_file::{PlanFile, Waypoint};
-use darrt_pr2::problem_file::{PrimitiveName, Surface};
-use darrt_pr2::verify::{RefusalKind, verify};
+use darrt_pr2::verify;
+use darrt_task::plan_file::{PlanFile, Waypoint};
+use darrt_task::problem_file::{PrimitiveName, Surface};
+use darrt_task::verify::RefusalKind;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use super::{about, from_here_on, plate, refused, waypoint};
@@ -135,13 +136,13 @@ fn steps_and_what_is_held_fit_together() {
     refused(plans::push(), 1, K::Mode, |plan| plan.steps[0].pushes = Some(PLATE.to_owned()));
     refused(plans::carry(), 2, K::Mode, |plan| plan.steps[1].holds = None);
     refused(plans::carry(), 3, K::Mode, |plan| plan.steps[2].holds = None);
-    refused(plans::carry(), 3, K::Mode, |plan| plan.steps[2].primitive = PrimitiveName::BaseTransit);
-    refused(plans::carry(), 2, K::Mode, |plan| plan.steps[1].primitive = PrimitiveName::ArmRigidTransfer);
+    refused(plans::carry(), 3, K::Mode, |plan| plan.steps[2].primitive = PrimitiveName::BASE_TRANSIT);
+    refused(plans::carry(), 2, K::Mode, |plan| plan.steps[1].primitive = PrimitiveName::ARM_RIGID_TRANSFER);
     refused(plans::carry(), 7, K::Mode, |plan| plan.steps[6].holds = plan.steps[5].holds.clone());
-    refused(plans::carry(), 7, K::Mode, |plan| plan.steps[6].primitive = PrimitiveName::ArmRigidTransfer);
-    refused(plans::push(), 2, K::Primitive, |plan| plan.problem.primitives.retain(|p| *p != PrimitiveName::Push));
+    refused(plans::carry(), 7, K::Mode, |plan| plan.steps[6].primitive = PrimitiveName::ARM_RIGID_TRANSFER);
+    refused(plans::push(), 2, K::Primitive, |plan| plan.problem.primitives.retain(|p| *p != PrimitiveName::PUSH));
     refused(plans::push(), 2, K::Stray, |plan| {
-        plan.steps[1].primitive = PrimitiveName::StraightLineArmTransit;
+        plan.steps[1].primitive = PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT;
         plan.steps[1].pushes = None;
     });
 }

@@ -1,8 +1,9 @@
 //! What comes too near without touching, and what may.
 
-use darrt_pr2::plan_file::{PlanFile, Pose};
-use darrt_pr2::problem_file::{Obstacle, Region};
-use darrt_pr2::verify::{RefusalKind, WarningKind, verify};
+use darrt_pr2::verify;
+use darrt_task::plan_file::{PlanFile, Pose};
+use darrt_task::problem_file::{Obstacle, Region};
+use darrt_task::verify::{RefusalKind, WarningKind};
 
 use super::{about, block, refused};
 use crate::builder::{PLATE, TABLE};

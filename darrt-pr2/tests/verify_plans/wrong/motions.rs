@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use darrt_pr2::plan_file::{PlanFile, Pose, Waypoint};
-use darrt_pr2::problem_file::Limits;
-use darrt_pr2::verify::{RefusalKind, verify};
+use darrt_pr2::verify;
+use darrt_task::plan_file::{PlanFile, Pose, Waypoint};
+use darrt_task::problem_file::Limits;
+use darrt_task::verify::RefusalKind;
 use nalgebra::Isometry3;
 
 use super::{from_here_on, joint, plate, refused, waypoint};

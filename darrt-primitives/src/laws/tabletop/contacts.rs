@@ -32,7 +32,7 @@ pub fn check_finger_contacts<M: Manipulator>(
                 if trial.is_finger_on(&blame, &name) {
                     let broken = Broken::new(FINGERS, blame.to_string(), format!("contact with {name} allowed"));
                     let call = || format!("check_finger_contacts(&m, &validity, &[{instance:?}], &{here:?}, &{ts:?})");
-                    return Err(broken.at(t).of(format_args!("instance {:?}", instance.label)).replayed_by(call));
+                    return Err(broken.at(t).of(format_args!("instance {:?}", instance.primitive)).replayed_by(call));
                 }
             }
         }

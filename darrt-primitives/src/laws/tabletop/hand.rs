@@ -6,8 +6,8 @@ use darrt_core::space::ComponentSpace;
 use nalgebra::Vector3;
 
 use super::{INSIDE, RETREAT, STRAIGHT, Trial};
-use crate::action::label;
 use crate::manipulator::Manipulator;
+use crate::primitive;
 
 impl<M: Manipulator> Trial<'_, M> {
     pub(super) fn inside(&self) -> Result<(), Broken> {
@@ -25,7 +25,7 @@ impl<M: Manipulator> Trial<'_, M> {
     }
 
     pub(super) fn hand(&self) -> Result<(), Broken> {
-        if self.instance.label == label::STRAIGHT_LINE_ARM_TRANSIT {
+        if self.instance.primitive == primitive::STRAIGHT_LINE_ARM_TRANSIT {
             self.straight()?;
         }
         let leaves = self.during.mode.engaged().is_some() && self.end.mode.engaged().is_none();

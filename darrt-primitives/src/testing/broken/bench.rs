@@ -4,14 +4,15 @@ use std::fmt;
 
 use darrt_core::laws::Broken;
 use darrt_core::motion::{Instance, Motion};
-use darrt_core::primitive::Instances;
+use darrt_core::primitive::{Instances, PrimitiveId};
 use darrt_core::random::{Purpose, stream};
 use darrt_core::state::ObjectId;
 use nalgebra::{Isometry3, Vector3};
 
 use super::unusable;
-use crate::action::{label, pick::pick, place::place, push::push};
+use crate::action::{pick::pick, place::place, push::push};
 use crate::laws::{TabletopClaims, check_tabletop_instance};
+use crate::primitive;
 use crate::testing::table::{Table, TableState, honest_table, object, start};
 
 /// An honest instance, and where it starts.
@@ -65,36 +66,36 @@ pub(super) fn scene(act: Act) -> Result<Scene, Broken> {
         first(|seed| push(&m, &from, object(0), &target, &mut rng(seed)).ok())
     };
     let picked = || first(|seed| pick(&m, &from, object(2), &mut rng(seed)).ok());
-    let (instances, label) = match act {
-        Act::Push => (pushed()?, label::PUSH),
-        Act::Transit => (picked()?, label::BASE_TRANSIT),
-        Act::Approach => (picked()?, label::STRAIGHT_LINE_ARM_TRANSIT),
-        Act::Pick => (picked()?, label::PICK),
+    let (instances, wanted) = match act {
+        Act::Push => (pushed()?, primitive::PUSH),
+        Act::Transit => (picked()?, primitive::BASE_TRANSIT),
+        Act::Approach => (picked()?, primitive::STRAIGHT_LINE_ARM_TRANSIT),
+        Act::Pick => (picked()?, primitive::PICK),
         Act::Carry | Act::Place | Act::Retreat => {
             let up = picked()?.into_iter().fold(from.clone(), |at, instance| instance.at(&m, 1.0, &at));
             let target = Isometry3::translation(0.5, 0.2, 0.73);
             let placed = first(|seed| place(&m, &up, &target, &mut rng(seed)).ok())?;
-            let label = match act {
-                Act::Carry => label::BASE_RIGID_TRANSFER,
-                Act::Place => label::PLACE,
-                _ => label::STRAIGHT_LINE_ARM_TRANSIT,
+            let wanted = match act {
+                Act::Carry => primitive::BASE_RIGID_TRANSFER,
+                Act::Place => primitive::PLACE,
+                _ => primitive::STRAIGHT_LINE_ARM_TRANSIT,
             };
-            return one(m, up, placed, label);
+            return one(m, up, placed, wanted);
         }
     };
-    one(m, from, instances, label)
+    one(m, from, instances, wanted)
 }
 
-/// The first of `instances` with this label.
-fn one(m: Table, from: TableState, instances: Instances<Table>, label: &str) -> Result<Scene, Broken> {
+/// The first of `instances` of this primitive.
+fn one(m: Table, from: TableState, instances: Instances<Table>, wanted: PrimitiveId) -> Result<Scene, Broken> {
     let mut here = from;
     for instance in instances {
-        if instance.label == label {
+        if instance.primitive == wanted {
             return Ok(Scene { m, from: here, instance });
         }
         here = instance.at(&m, 1.0, &here);
     }
-    Err(unusable(format_args!("no instance {label}")))
+    Err(unusable(format_args!("no instance {wanted}")))
 }
 
 impl Scene {

@@ -6,9 +6,9 @@ use nalgebra::{Isometry3, Translation3, Vector3};
 
 use super::bench::{Act, Change, object_of, pose_mut, regrip, scene, shift};
 use super::{Case, unusable};
-use crate::action::label;
 use crate::laws::tabletop::{ATTACH, EXEMPT, HELD_RIGID, INSIDE, MODES, PICK_YAW, RELEASE, RETREAT, STILL, STRAIGHT};
 use crate::mode::{Contacts, Held, SurfaceId, TouchReason};
+use crate::primitive;
 use crate::testing::table::object;
 
 /// The instance with a change on the way.
@@ -162,18 +162,18 @@ fn hands() -> Vec<Case> {
         }),
         case("leaves sideways", "retreats along an axis of the base, not of the hand", RETREAT, || {
             let mut scene = scene(Act::Retreat)?;
-            scene.instance.label = label::ARM_TRANSIT;
+            scene.instance.primitive = primitive::ARM_TRANSIT;
             scene.warped(Box::new(|_, t, state| state.robot.arm[1] += 0.05 * t)).check()
         }),
         case("retreats into the object", "the sign of the retreat is wrong", RETREAT, || {
             let mut scene = scene(Act::Retreat)?;
-            scene.instance.label = label::ARM_TRANSIT;
+            scene.instance.primitive = primitive::ARM_TRANSIT;
             let z = scene.from.robot.arm[2];
             scene.warped(Box::new(move |_, _, state| state.robot.arm[2] = 2.0 * z - state.robot.arm[2])).check()
         }),
         case("drives off", "the base already drives while the hand retreats", RETREAT, || {
             let mut scene = scene(Act::Retreat)?;
-            scene.instance.label = label::ARM_TRANSIT;
+            scene.instance.primitive = primitive::ARM_TRANSIT;
             let drives: Change = Box::new(|_, t, state| {
                 // The arm makes up for the base, so that the hand still goes straight up.
                 let (sin, cos) = state.robot.base[2].sin_cos();

@@ -120,7 +120,7 @@ fn held<D: Domain>(world: &World<D>) -> Result<(), Broken> {
                 let during = State { mode: instance.at(m, 0.5, &here).mode, ..end.clone() };
                 if arrives && during.mode == from.mode && validity.check(m, &during, &instance.contacts).is_ok() {
                     let broken = Broken::new(validity::HELD, format!("free: {during:?}"), format!("at rest: {blame}"));
-                    return Err(broken.of(format_args!("{}, instance {:?}", primitive.name(), instance.label)));
+                    return Err(broken.of(format_args!("{}, instance {:?}", primitive.name(), instance.primitive)));
                 }
                 here = end;
             }

@@ -12,7 +12,7 @@ use crate::laws::primitive::{AT_HAND, HARM, MOVES, NAME, PANICS, PROGRESS, REVER
 use crate::laws::{Broken, PrimitiveClaims, try_primitive};
 use crate::motion::{Instance, Waypoints};
 use crate::partial::PartialState;
-use crate::primitive::{Infeasible, Instances, Primitive};
+use crate::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 
@@ -186,8 +186,8 @@ fn answers() -> Vec<Case> {
     /// A primitive that calls itself something else each time.
     struct Nameless;
     impl Primitive<Bench> for Nameless {
-        fn name(&self) -> &'static str {
-            ["Go", "Went", "Gone"][CALLS.fetch_add(1, Ordering::Relaxed) as usize % 3]
+        fn id(&self) -> PrimitiveId {
+            PrimitiveId::new(0, ["Go", "Went", "Gone"][CALLS.fetch_add(1, Ordering::Relaxed) as usize % 3])
         }
 
         fn useful(&self, m: &Bench, from: &State<Bench>, to: &PartialState<Bench>) -> bool {

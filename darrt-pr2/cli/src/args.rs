@@ -1,0 +1,368 @@
+//! Commands and options.
+
+use std::ops::Range;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use super::choices::{ImproveChoice, SearchChoice};
+use super::safety::SafetyOptions;
+use crate::bench::Shard;
+
+/// Most attempts at the same time.
+const MOST_THREADS: u64 = 256;
+
+/// Plan how a PR2 pushes, grasps, carries and places things.
+///
+/// DARRT searches a tree of states whose edges are whole actions (primitives): driving, moving the arm, pushing,
+/// picking, carrying, placing. The plan is checked by a separate verifier, printed as a table, saved as JSON, and drawn.
+#[derive(Debug, Parser)]
+#[command(name = "darrt", version, after_help = EXAMPLES, propagate_version = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  darrt problems                      the built-in problems: the paper's, and others
+  darrt plan plate3                   solve one; writes plate3.plan.json and plate3.html
+  darrt show plate3.plan.json         draw a plan again
+  darrt check plate3.plan.json        judge a plan, for example one edited by hand
+  darrt bench                         the paper's table: every problem, ten seeds
+  darrt problems --print plate3 > mine.toml
+                                      copy a problem, edit it, then: darrt plan mine.toml
+
+Exit codes:
+  0    solved, or the plan is accepted
+  1    not solved within the budget
+  2    bad input or usage
+  3    the verifier refuses the plan; with `check --strict` also a plan with warnings
+  4    the output cannot be written
+  130  interrupted";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Solve a problem: print the steps, write the plan and a picture
+    Plan(PlanOptions),
+    /// Judge a plan file with the verifier
+    Check(CheckOptions),
+    /// List the built-in problems, or print one to copy and edit
+    Problems(ProblemsOptions),
+    /// Draw a problem or a plan
+    Show(ShowOptions),
+    /// Print the JSON Schema of problem files or plan files
+    Schema(SchemaOptions),
+    /// Make problems like a given one: places, sizes and heights drawn at random
+    Generate(GenerateOptions),
+    /// Run problems x variants x seeds and tell the times, as a table, a page and logs
+    Bench(BenchOptions),
+}
+
+const PLAN_EXAMPLES: &str = "\
+Examples:
+  darrt plan plate1                                 until solved or out of time
+  darrt plan plate3 --seed 7 -o p.json              another random seed, another file
+  darrt plan plate3 --iterations 20000 --restart 5000 --time-limit 3600
+                                                    limited by work, not by the clock
+  darrt plan plate3 --improve steps --time-limit 30 the plan with the fewest steps that is found in 30 s
+  darrt plan mine.toml --stats                      see where the attempts end
+
+The same problem, seed and options give the same plan file byte for byte, with any number
+of threads, as long as the time limit is not what ends the search or the improvement.
+
+Every attempt ends at a restart; --improve and --search portfolio need them, and begin a new
+attempt after 2000 iterations if neither the problem nor --restart says when. The share of an
+attempt in --iterations is all that it may use until its restart, also when it needs less.
+After Ctrl-C, --improve gives the best plan so far: the first line says that it was interrupted,
+and the exit code is 0, because there is a plan.
+
+--search portfolio: the first attempt is darrt, then connect, hierarchical, hierarchical-connect
+and so on, so a short --restart brings the others in.
+Every plan that is found is improved in the seconds that it takes to carry out, with a number of
+attempts that its steps decide, before it is verified; --no-improve leaves that out, and so does
+--improve clearance. --improve COST chooses among several plans.
+Travel is a bound on the ways of all points of the robot and of what it
+moves: with less of it the base alone may go farther.";
+
+/// Options of `darrt plan`.
+#[derive(Debug, Args)]
+#[command(after_help = PLAN_EXAMPLES)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of the command line")]
+pub struct PlanOptions {
+    /// Name of a built-in problem, or a problem file
+    pub problem: String,
+    /// Seed of every random choice
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
+    pub seed: u64,
+    /// Stop after this many seconds [default: as the problem says]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
+    pub time_limit: Option<Duration>,
+    /// Stop after this many iterations, all attempts together [default: as the problem says]
+    #[arg(long, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true)]
+    pub iterations: Option<u64>,
+    /// Start over with an empty tree after this many iterations [default: as the problem says]
+    #[arg(long, value_name = "ITERATIONS", value_parser = positive, allow_hyphen_values = true)]
+    pub restart: Option<u64>,
+    /// What a sample specifies: robot-or-objects, random-subset, full, or another one that this program knows [default: as
+    /// the problem says]
+    #[arg(long, value_name = "NAME")]
+    pub sampler: Option<String>,
+    /// What makes a state of the tree the nearest one: greedy, euclidean, exact-tour, or another one that this program knows
+    /// [default: as the problem says]
+    #[arg(long, value_name = "NAME")]
+    pub distance: Option<String>,
+    /// What improving a plan saves: execution-time, or another cost that this program knows [default: execution-time]
+    #[arg(long, value_name = "NAME", conflicts_with = "no_improve")]
+    pub cost: Option<String>,
+    /// Which search; the attempts of `portfolio` take all of them in turn
+    #[arg(long, value_enum, default_value_t = SearchChoice::Darrt)]
+    pub search: SearchChoice,
+    /// Plan anew until the limit, and keep the plan with the fewest steps, the shortest travel or the most clearance
+    #[arg(long, value_enum, value_name = "COST")]
+    pub improve: Option<ImproveChoice>,
+    /// Leave plans as they are found: not fewer steps, nearer stops and shorter ways
+    #[arg(long)]
+    pub no_improve: bool,
+    /// Attempts that run at the same time, 1 to 256; helps only with restarts
+    #[arg(long, default_value_t = 1, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: usize,
+    /// Write the plan here [default: PROBLEM.plan.json in the current folder, without the problem's own ending]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write the picture here, .html or .svg [default: beside the plan, .html]
+    #[arg(long, value_name = "FILE", conflicts_with = "no_picture")]
+    pub picture: Option<PathBuf>,
+    /// Write no picture
+    #[arg(long)]
+    pub no_picture: bool,
+    /// Print where the attempts of every primitive ended, and which bodies were in the way
+    #[arg(long)]
+    pub stats: bool,
+    /// Print nothing but errors
+    #[arg(short, long, conflicts_with = "stats")]
+    pub quiet: bool,
+    /// Margins in the place of those of the problem.
+    #[command(flatten)]
+    pub safety: SafetyOptions,
+}
+
+/// Options of `darrt check`.
+#[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of the command line")]
+pub struct CheckOptions {
+    /// The plan file
+    pub plan: PathBuf,
+    /// Print the steps of the plan too
+    #[arg(long)]
+    pub steps: bool,
+    /// Accept no plan with warnings
+    #[arg(long)]
+    pub strict: bool,
+    /// Print what was found as one JSON object
+    #[arg(long, conflicts_with_all = ["steps", "quiet"])]
+    pub json: bool,
+    /// Print nothing but errors
+    #[arg(short, long, conflicts_with = "steps")]
+    pub quiet: bool,
+}
+
+/// Options of `darrt problems`.
+#[derive(Debug, Args)]
+pub struct ProblemsOptions {
+    /// Print this built-in problem as a file to copy and edit
+    #[arg(long, value_name = "NAME")]
+    pub print: Option<String>,
+}
+
+/// Options of `darrt show`.
+#[derive(Debug, Args)]
+pub struct ShowOptions {
+    /// Name of a built-in problem, a problem file, or a plan file (.json)
+    pub source: String,
+    /// Write the picture here, .html or .svg [default: PROBLEM.html in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Leave out the small view of every step
+    #[arg(long)]
+    pub overview: bool,
+}
+
+/// Options of `darrt schema`.
+#[derive(Debug, Args)]
+pub struct SchemaOptions {
+    /// Which kind of file
+    #[arg(value_enum)]
+    pub kind: SchemaKind,
+}
+
+const BENCH_EXAMPLES: &str = "\
+Examples:
+  darrt bench                                       the paper's table, ten seeds each
+  darrt bench plate3 --seeds 0..100 --variants default,no-reroute,euclidean --report page.html
+  darrt bench --variants all --seeds 20 --shard 1/2 --out one.jsonl     on one machine
+  darrt bench --variants all --seeds 20 --shard 2/2 --out two.jsonl     on another
+  darrt bench --merge one.jsonl two.jsonl --report page.html --ompl logs
+
+The same command after an interruption goes on where it stopped. Runs without a plan count in
+every quantile, as longer than the time they had.";
+
+/// Options of `darrt bench`.
+#[derive(Debug, Args)]
+#[command(after_help = BENCH_EXAMPLES)]
+pub struct BenchOptions {
+    /// Names of built-in problems, problem files, or folders of them [default: the six of the paper]
+    #[arg(value_name = "PROBLEM")]
+    pub problems: Vec<String>,
+    /// What is changed about the planner, by name, or `all`; `--list-variants` lists them
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "default")]
+    pub variants: Vec<String>,
+    /// List the variants and end
+    #[arg(long)]
+    pub list_variants: bool,
+    /// Seeds from A to B - 1, or how many from 0 on
+    #[arg(long, value_name = "A..B", default_value = "10", value_parser = seeds, allow_hyphen_values = true)]
+    pub seeds: Range<u64>,
+    /// Stop every run after this many seconds [default: as the problem says]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
+    pub time_limit: Option<Duration>,
+    /// Stop every run after this many iterations [default: as the problem says]
+    #[arg(long, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true)]
+    pub iterations: Option<u64>,
+    /// Runs at the same time, 1 to 256 [default: half the cores, so that runs do not slow each other down]
+    #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
+    pub jobs: Option<usize>,
+    /// Do only this share of the runs: 2/5 is the second of five
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+    /// Add every run to this file, and skip those that it holds [default: bench.jsonl; with --merge: none]
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Run nothing: put the results of these files together
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["problems", "variants", "seeds", "time_limit", "iterations", "shard", "jobs"])]
+    pub merge: Vec<PathBuf>,
+    /// Write a page with curves and tables here, .html
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
+    /// Write a log for `ompl_benchmark_statistics` per problem into this folder
+    #[arg(long, value_name = "FOLDER")]
+    pub ompl: Option<PathBuf>,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+const GENERATE_EXAMPLES: &str = "\
+Examples:
+  darrt generate plate3 --seeds 7..8 > mine.toml     one problem
+  darrt generate plate3 --seeds 200 --into many      many/plate3-g0.toml and so on
+  darrt bench many --seeds 1                         how the planner does on them
+
+The same problem and seed give the same file. Every problem is valid and was solved once.";
+
+/// Options of `darrt generate`.
+#[derive(Debug, Args)]
+#[command(after_help = GENERATE_EXAMPLES)]
+pub struct GenerateOptions {
+    /// Name of a built-in problem, or a problem file
+    pub problem: String,
+    /// Seeds from A to B - 1, or how many from 0 on: one problem each
+    #[arg(long, value_name = "A..B", default_value = "1", value_parser = seeds, allow_hyphen_values = true)]
+    pub seeds: Range<u64>,
+    /// Write a file per seed into this folder [default: print the only one]
+    #[arg(long, value_name = "FOLDER")]
+    pub into: Option<PathBuf>,
+    /// Problems that are tried at the same time, 1 to 256 [default: the cores]
+    #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
+    pub jobs: Option<usize>,
+    /// Print nothing but errors
+    #[arg(short, long, requires = "into")]
+    pub quiet: bool,
+}
+
+/// The kinds of file with a schema.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SchemaKind {
+    /// Problem files (TOML)
+    Problem,
+    /// Plan files (JSON)
+    Plan,
+}
+
+/// A whole number from `least` to `most`, in a message that says so whatever is wrong.
+// What looks like an option, such as `-1`, is let through to here: the parser's own answer would be about options.
+fn whole(text: &str, least: u64, most: u64) -> Result<u64, String> {
+    let value = text.parse().ok().filter(|value| (least..=most).contains(value));
+    value.ok_or_else(|| format!("must be a whole number from {least} to {most}"))
+}
+
+fn any_count(text: &str) -> Result<u64, String> {
+    whole(text, 0, u64::MAX)
+}
+
+fn positive(text: &str) -> Result<u64, String> {
+    whole(text, 1, u64::MAX)
+}
+
+fn threads(text: &str) -> Result<usize, String> {
+    whole(text, 1, MOST_THREADS).and_then(|count| usize::try_from(count).map_err(|error| error.to_string()))
+}
+
+/// `A..B`, or a count of seeds from 0 on; at least one.
+fn seeds(text: &str) -> Result<Range<u64>, String> {
+    let range = match text.split_once("..") {
+        Some((from, to)) => from.parse().ok().zip(to.parse().ok()).map(|(from, to)| from..to),
+        None => text.parse().ok().map(|count| 0..count),
+    };
+    let range = range.filter(|range: &Range<u64>| !range.is_empty());
+    range.ok_or_else(|| "must be a count above 0, or A..B with A below B".to_owned())
+}
+
+/// A positive time in seconds.
+fn seconds(text: &str) -> Result<Duration, String> {
+    const MOST: f64 = 1e9;
+    let value = text.parse().ok().filter(|value: &f64| *value > 0.0 && *value <= MOST);
+    // Less than the clock can tell would be no time at all.
+    let time = value.and_then(|value| Duration::try_from_secs_f64(value).ok()).filter(|time| !time.is_zero());
+    time.ok_or_else(|| format!("must be a number of seconds above 0 and at most {MOST:e}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn times_are_positive_and_finite() {
+        assert_eq!(seconds("1.5").unwrap(), Duration::from_millis(1500));
+        for bad in ["0", "-1", "nan", "inf", "1e10", "1e300", "1e-300", "soon", ""] {
+            assert_eq!(seconds(bad).unwrap_err(), "must be a number of seconds above 0 and at most 1e9", "{bad}");
+        }
+    }
+
+    #[test]
+    fn counts_are_whole_and_in_range() {
+        assert_eq!((any_count("0"), any_count("18446744073709551615")), (Ok(0), Ok(u64::MAX)));
+        for bad in ["-1", "1.5", "18446744073709551616", "--quiet", ""] {
+            assert_eq!(any_count(bad).unwrap_err(), "must be a whole number from 0 to 18446744073709551615", "{bad}");
+        }
+        assert!(positive("0").is_err() && threads("257").is_err());
+        assert_eq!(threads("256"), Ok(256));
+    }
+
+    #[test]
+    fn seeds_are_a_count_or_a_range() {
+        assert_eq!((seeds("3"), seeds("5..9")), (Ok(0..3), Ok(5..9)));
+        for bad in ["0", "5..5", "9..5", "a..b", "-1..2", "1..=3", ""] {
+            assert!(seeds(bad).is_err(), "{bad}");
+        }
+    }
+}

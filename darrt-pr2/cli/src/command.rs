@@ -1,0 +1,10 @@
+//! The commands, one file each.
+
+pub(crate) mod bench;
+mod bench_table;
+pub(crate) mod check;
+pub(crate) mod generate;
+pub(crate) mod plan;
+pub(crate) mod problems;
+pub(crate) mod schema;
+pub(crate) mod show;

@@ -1,0 +1,116 @@
+//! The results of a benchmark as tables.
+
+use crate::bench::statistics::Summary;
+use crate::bench::survival::Quantile;
+use crate::bench::variant::VARIANTS;
+use crate::table;
+
+/// One row per problem and variant.
+pub(crate) fn table(summaries: &[Summary]) -> String {
+    let header = [
+        "problem",
+        "variant",
+        "solved",
+        "median s",
+        "95 % interval",
+        "quartiles",
+        "95th",
+        "iterations",
+        "nodes",
+        "restarts",
+        "paper s",
+    ];
+    let mut table = table::with_header(header);
+    let mut problem = "";
+    for summary in summaries {
+        // A problem is named once.
+        let name = if summary.problem == problem { "" } else { summary.problem.as_str() };
+        problem = &summary.problem;
+        table.add_row(row(name, summary));
+    }
+    let text = table::finished(table, [2, 3, 4, 5, 6, 7, 8, 9, 10]);
+    let is_censored = summaries.iter().any(|summary| summary.solved < summary.runs);
+    let note = if is_censored {
+        "\n> : so many runs ended without a plan that all that is known is a lower bound"
+    } else {
+        ""
+    };
+    format!("{}{note}\n", text.trim_end())
+}
+
+/// The plans: one row per problem and variant, medians.
+pub(crate) fn plans(summaries: &[Summary]) -> String {
+    let header = [
+        "problem",
+        "variant",
+        "steps",
+        "driven m",
+        "95th",
+        "turned \u{b0}",
+        "arm rad",
+        "hand m",
+        "execution s",
+        "clearance mm",
+    ];
+    let mut table = table::with_header(header);
+    let mut problem = "";
+    for summary in summaries {
+        let name = if summary.problem == problem { "" } else { summary.problem.as_str() };
+        problem = &summary.problem;
+        let quality = &summary.quality;
+        table.add_row([
+            name.to_owned(),
+            summary.variant.clone(),
+            whole(summary.steps),
+            hundredths(quality.base_m),
+            hundredths(quality.base_95_m),
+            whole(quality.turn_deg),
+            whole(quality.arm_rad),
+            hundredths(quality.hand_m),
+            whole(quality.execution_s),
+            whole(quality.clearance_m.map(|metres| metres * 1e3)),
+        ]);
+    }
+    table::finished(table, [2, 3, 4, 5, 6, 7, 8, 9])
+}
+
+fn hundredths(value: Option<f64>) -> String {
+    value.map_or_else(|| "\u{2013}".to_owned(), |value| format!("{value:.2}"))
+}
+
+fn row(name: &str, summary: &Summary) -> [String; 11] {
+    let time = |q: f64| summary.time.quantile(q).to_string();
+    [
+        name.to_owned(),
+        summary.variant.clone(),
+        format!("{}/{}", summary.solved, summary.runs),
+        time(0.5),
+        summary.median_interval.map_or_else(String::new, |[low, high]| range(low, high)),
+        range(summary.time.quantile(0.25), summary.time.quantile(0.75)),
+        time(0.95),
+        whole(summary.iterations),
+        whole(summary.nodes),
+        summary.restarts.to_string(),
+        summary.paper_s.map_or_else(String::new, |paper| paper.to_string()),
+    ]
+}
+
+fn range(low: Quantile, high: Quantile) -> String {
+    match (low, high) {
+        (Quantile::Beyond(_), Quantile::Beyond(_)) => low.to_string(),
+        _ => format!("{low} \u{2013} {high}"),
+    }
+}
+
+fn whole(count: Option<f64>) -> String {
+    count.map_or_else(|| "\u{2013}".to_owned(), |count| format!("{count:.0}"))
+}
+
+/// The variants and what they change.
+pub(crate) fn variants() -> String {
+    let mut table = table::with_header(["variant", "what it changes"]);
+    for variant in VARIANTS {
+        table.add_row([variant.name, variant.about]);
+    }
+    table::finished(table, [])
+}

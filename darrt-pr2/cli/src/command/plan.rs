@@ -1,0 +1,226 @@
+//! `darrt plan`: solve, verify, print, write.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use darrt_core::budget::{Cancel, Stop};
+
+use super::check;
+use crate::args::PlanOptions;
+use crate::exit::{Exit, Failure};
+use crate::output::{self, Output};
+use crate::progress::Progress;
+use crate::{diagnosis, safety, statistics, steps};
+use darrt_task::picture::{self, Extent, Format, Story, Travel};
+use darrt_task::plan_file::PlanFile;
+use darrt_task::planning::{PlanRequest, PlanResult};
+use darrt_task::problem_file::ProblemFile;
+use darrt_task::program::Program;
+use darrt_task::robot::RobotFacts;
+use darrt_task::text::counted;
+
+/// Plans and reports.
+///
+/// # Errors
+/// Every end but a verified plan that is written, with its exit code.
+pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
+    let problem = options.safety.applied(program.open(&options.problem)?, &options.problem)?;
+    let files = Files::choose(options)?;
+    let request = request(options, problem);
+    let cancel = Cancel::new();
+    listen(&cancel);
+    let mut progress = Progress::start(&request.problem.name, limit(&request), options.quiet);
+    let result = program
+        .plan(&request, &cancel, &mut progress)
+        .map_err(|error| Failure::input(located(&options.problem, &error.to_string())))?;
+    progress.finish();
+    if options.stats {
+        output.print(&statistics::report(&result.accounts))?;
+    }
+    let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else { return Err(failed(&request, &result)) };
+    let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
+    let story = Story::of_plan(plan, &robot)?;
+    // First of all: a terminal that has gone away must not cost the plan.
+    files.write(plan, &story)?;
+    if !options.quiet {
+        output.print(&summary(&request, &result, cancel.is_cancelled()))?;
+        if let Some(words) = improvement(&result, &story, &robot)? {
+            output.print(&words)?;
+        }
+        output.print(&steps::table(&story))?;
+        output.print(&check::words(proof))?;
+        output.print(&safety::margins(&request.problem))?;
+        if !proof.warnings.is_empty() {
+            output.print(&safety::notices(&proof.warnings))?;
+        }
+        check::notices(plan, output)?;
+        output.print(&files.words())?;
+    }
+    Ok(Exit::Solved)
+}
+
+fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
+    PlanRequest {
+        problem,
+        seed: options.seed,
+        threads: options.threads,
+        time_limit: options.time_limit,
+        iterations: options.iterations,
+        restart: options.restart,
+        sampler: options.sampler.clone().map(Into::into),
+        distance: options.distance.clone().map(Into::into),
+        algorithms: options.search.algorithms(),
+        improve: options.improve.map(Into::into),
+        as_found: options.no_improve,
+        bases_from_reachability: false,
+        cost: options.cost.clone().map_or_else(Default::default, Into::into),
+        changes: Vec::new(),
+    }
+}
+
+fn limit(request: &PlanRequest) -> Option<Duration> {
+    request.time_limit.or_else(|| Duration::try_from_secs_f64(request.problem.budget.time_limit_s).ok())
+}
+
+/// Cancels on Ctrl-C and on a request to terminate; without a handler the system's default does it less politely.
+pub(crate) fn listen(cancel: &Cancel) {
+    let cancel = cancel.clone();
+    let _ = ctrlc::set_handler(move || cancel.cancel());
+}
+
+/// The message with the name of the problem in front, unless it says where by itself.
+fn located(problem: &str, message: &str) -> String {
+    if message.contains(problem) { message.to_owned() } else { format!("{problem}: {message}") }
+}
+
+fn failed(request: &PlanRequest, result: &PlanResult) -> Failure {
+    let exit = if result.stop == Stop::Cancelled { Exit::Interrupted } else { Exit::NotSolved };
+    let name = &request.problem.name;
+    Failure::new(exit, format!("{name}: no plan found (seed {}): {}", request.seed, diagnosis::explain(result)))
+}
+
+/// Plans that are improved end with "solved" also when they were interrupted: a plan there is, but it might have been better.
+fn summary(request: &PlanRequest, result: &PlanResult, is_interrupted: bool) -> String {
+    let solved = match request.improve {
+        Some(_) => format!("the best of {} in", counted(result.plans, "plan")),
+        None => "solved in".to_owned(),
+    };
+    format!(
+        "{}: {solved} {:.1} s{} (seed {}, {}, {}, largest tree {})",
+        request.problem.name,
+        result.elapsed.as_secs_f64(),
+        if is_interrupted { ", interrupted" } else { "" },
+        request.seed,
+        counted(result.iterations, "iteration"),
+        counted(result.restarts, "restart"),
+        counted(result.nodes as u64, "node")
+    )
+}
+
+/// What improving the plan did; `None` if it is as it was found.
+///
+/// # Errors
+/// The plan that was found cannot be told.
+fn improvement(result: &PlanResult, story: &Story, robot: &RobotFacts) -> Result<Option<String>, Failure> {
+    let (Some((found, found_s)), Some(seconds)) = (&result.found, result.execution_s) else { return Ok(None) };
+    let before = Story::of_plan(found, robot)?;
+    let [from, to] = [&before, story]
+        .map(|story| story.steps.iter().fold(Travel::default(), |sum, step| sum.plus(&Travel::of(story, step))));
+    Ok(Some(format!(
+        "improved: {} to {} steps, {:.1} to {:.1} m driven, {:.0} to {:.0} degrees turned, {:.0} to {:.0} rad of arm travel, \
+         {found_s:.0} to {seconds:.0} s (before: not counting ways around what is blocked)",
+        before.steps.len(),
+        story.steps.len(),
+        from.base_m,
+        to.base_m,
+        from.base_turn.to_degrees(),
+        to.base_turn.to_degrees(),
+        from.arm_turn,
+        to.arm_turn,
+    )))
+}
+
+/// The files to write, checked before the work.
+struct Files {
+    plan: PathBuf,
+    picture: Option<(PathBuf, Format)>,
+}
+
+impl Files {
+    fn choose(options: &PlanOptions) -> Result<Self, Failure> {
+        // Named after what the user named: a copy of a problem must not overwrite the plan of the original.
+        let asked = Path::new(&options.problem);
+        let stem = asked.file_stem().map_or_else(|| options.problem.clone(), |s| s.to_string_lossy().into_owned());
+        let default = || PathBuf::from(format!("{}.plan.json", output::file_stem(&stem)));
+        let plan = options.output.clone().unwrap_or_else(default);
+        let picture = match (&options.picture, options.no_picture) {
+            (_, true) => None,
+            (Some(path), _) => Some(path.clone()),
+            (None, _) => Some(beside(&plan)),
+        };
+        let plan = output::writable(&plan)?;
+        let picture = match picture {
+            Some(path) => Some((output::writable(&path)?, Format::of_path(&path)?)),
+            None => None,
+        };
+        let is_problem = |path: &Path| asked.exists() && output::is_same_file(asked, path);
+        if let Some(path) =
+            [Some(&plan), picture.as_ref().map(|(path, _)| path)].into_iter().flatten().find(|p| is_problem(p))
+        {
+            return Err(Failure::input(format!("{}: is the problem file itself, it would be lost", path.display())));
+        }
+        if picture.as_ref().is_some_and(|(path, _)| output::is_same_file(path, &plan)) {
+            let text = format!("{}: cannot be both the plan and the picture", plan.display());
+            return Err(Failure::input(text));
+        }
+        Ok(Self { plan, picture })
+    }
+
+    fn write(&self, plan: &PlanFile, story: &Story) -> Result<(), Failure> {
+        plan.write(&self.plan)?;
+        match &self.picture {
+            Some((path, format)) => output::write_file(path, &picture::draw(story, *format, Extent::Whole)),
+            None => Ok(()),
+        }
+    }
+
+    fn words(&self) -> String {
+        let plan = format!("plan:     {}", self.plan.display());
+        match &self.picture {
+            Some((path, _)) => format!("{plan}\npicture:  {}", path.display()),
+            None => plan,
+        }
+    }
+}
+
+/// The picture that belongs to a plan file: `a/b.plan.json` and `a/b.json` have `a/b.html`.
+fn beside(plan: &Path) -> PathBuf {
+    let bare = plan.with_extension("");
+    let bare = if bare.extension().is_some_and(|ending| ending == "plan") { bare.with_extension("") } else { bare };
+    let mut name = bare.into_os_string();
+    name.push(".html");
+    PathBuf::from(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_picture_lies_beside_the_plan() {
+        for (plan, picture) in [
+            ("plate3.plan.json", "plate3.html"),
+            ("a/p.json", "a/p.html"),
+            ("a.b/p", "a.b/p.html"),
+            ("v1.2.json", "v1.2.html"),
+        ] {
+            assert_eq!(beside(Path::new(plan)), Path::new(picture));
+        }
+    }
+
+    #[test]
+    fn a_message_names_the_problem_once() {
+        assert_eq!(located("a.toml", "a.toml: wrong"), "a.toml: wrong");
+        assert_eq!(located("a.toml", "wrong"), "a.toml: wrong");
+    }
+}

@@ -1,0 +1,162 @@
+//! Texts to the standard output and whole files to disk.
+
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use super::exit::{Exit, Failure};
+use darrt_task::text::printable;
+use darrt_task::text_file;
+
+/// Where results are printed. A reader that closes its end is not an error: the rest is dropped.
+pub(crate) struct Output {
+    to: Box<dyn Write>,
+    is_closed: bool,
+}
+
+impl Output {
+    /// The standard output.
+    pub(crate) fn stdout() -> Self {
+        Self::new(Box::new(io::stdout()))
+    }
+
+    /// Any other place.
+    pub(crate) fn new(to: Box<dyn Write>) -> Self {
+        Self { to, is_closed: false }
+    }
+
+    /// Prints one text, ended by a line feed if it has none; what a terminal would act on is escaped.
+    ///
+    /// # Errors
+    /// [`Exit::CannotWrite`] when the text cannot be written, a closed pipe excepted.
+    pub(crate) fn print(&mut self, text: &str) -> Result<(), Failure> {
+        if self.is_closed {
+            return Ok(());
+        }
+        let text = printable(text);
+        let end = if text.ends_with('\n') { "" } else { "\n" };
+        let written = self.to.write_all(text.as_bytes()).and_then(|()| self.to.write_all(end.as_bytes()));
+        match written.and_then(|()| self.to.flush()) {
+            Ok(()) => Ok(()),
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => {
+                self.is_closed = true;
+                Ok(())
+            }
+            Err(error) => Err(Failure::new(Exit::CannotWrite, format!("standard output: cannot be written: {error}"))),
+        }
+    }
+}
+
+/// Says before any work whether a file can be put at `path`, and where it will really be: links are followed.
+///
+/// # Errors
+/// [`Exit::CannotWrite`] with the path when its folder does not exist or cannot be written, or when something that is
+/// not a regular file is there.
+pub(crate) fn writable(path: &Path) -> Result<PathBuf, Failure> {
+    let refuse = |reason: String| Failure::new(Exit::CannotWrite, format!("{}: {reason}", path.display()));
+    let place = match std::fs::metadata(path) {
+        Ok(there) if !there.is_file() => return Err(refuse("is there already and is not a regular file".to_owned())),
+        Ok(_) => path.canonicalize().map_err(|error| refuse(format!("cannot be written: {error}")))?,
+        Err(_) => path.to_path_buf(),
+    };
+    if place.file_name().is_none() {
+        return Err(refuse("is not the name of a file".to_owned()));
+    }
+    // The new file is made and dropped again.
+    text_file::beside(&place).map_err(|error| refuse(format!("cannot be written: {error}")))?;
+    Ok(place)
+}
+
+/// Do both name the same file, whether it is there already or not?
+pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        path.canonicalize().ok().or_else(|| {
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            Some(folder.canonicalize().ok()?.join(path.file_name()?))
+        })
+    };
+    a == b || place(a).is_some_and(|a| place(b) == Some(a))
+}
+
+/// Puts `text` at `path` in one move: whoever looks sees the old file, the whole new one, or none.
+///
+/// # Errors
+/// [`Exit::CannotWrite`] with the path.
+pub(crate) fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
+    text_file::replace(path, text)
+        .map_err(|error| Failure::new(Exit::CannotWrite, format!("{}: cannot be written: {error}", path.display())))
+}
+
+/// A name as part of a file name: letters, digits, dots, dashes and underscores stay, runs of all else become a dash.
+pub(crate) fn file_stem(name: &str) -> String {
+    let mut stem = String::new();
+    for c in name.chars() {
+        if c.is_alphanumeric() || matches!(c, '.' | '-' | '_') {
+            stem.push(c);
+        } else if !stem.ends_with('-') {
+            stem.push('-');
+        }
+    }
+    let stem: String = stem.trim_matches(['.', '-']).chars().take(80).collect();
+    if stem.is_empty() { "problem".to_owned() } else { stem }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Fails with one kind of error.
+    struct Broken(ErrorKind);
+
+    impl Write for Broken {
+        fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+            Err(self.0.into())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_closed_pipe_is_no_error_but_a_full_disk_is() {
+        let mut closed = Output::new(Box::new(Broken(ErrorKind::BrokenPipe)));
+        assert!(closed.print("a").is_ok() && closed.print("b").is_ok());
+        let failure = Output::new(Box::new(Broken(ErrorKind::StorageFull))).print("a").unwrap_err();
+        assert_eq!(failure.exit, Exit::CannotWrite);
+    }
+
+    #[test]
+    fn names_become_harmless_file_names() {
+        for (name, stem) in [
+            ("plate3", "plate3"),
+            ("../../etc/passwd", "etc-passwd"),
+            ("My problem: (2)", "My-problem-2"),
+            ("///", "problem"),
+        ] {
+            assert_eq!(file_stem(name), stem);
+        }
+        assert_eq!(file_stem(&"x".repeat(500)).len(), 80);
+    }
+
+    #[test]
+    fn a_place_that_can_be_written_is_left_as_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("picture.svg");
+        let place = writable(&path).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        write_file(&place, "one").unwrap();
+        writable(&path).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "one");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn folders_missing_folders_and_devices_are_refused_beforehand() {
+        let folder = tempfile::tempdir().unwrap();
+        for path in [folder.path().to_path_buf(), folder.path().join("no/file"), PathBuf::from("/dev/null")] {
+            let failure = writable(&path).unwrap_err();
+            assert_eq!(failure.exit, Exit::CannotWrite);
+            assert!(failure.message.contains(&path.display().to_string()), "{}", failure.message);
+        }
+    }
+}

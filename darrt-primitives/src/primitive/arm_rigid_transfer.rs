@@ -1,0 +1,39 @@
+//! Arm-Rigid-Transfer: the arm moves an attached object towards a goal pose, in straight lines in joint space (paper section 5.1).
+
+use darrt_core::partial::PartialState;
+use darrt_core::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
+use rand::Rng;
+
+use super::joint_group::{asks_for_transfer, move_group};
+use crate::action::transfer::transfer;
+use crate::arm_space::ARM;
+use crate::manipulator::Manipulator;
+use crate::tabletop::{Tabletop, TabletopState};
+use crate::wish::held_target_in_air;
+
+/// Arm-Rigid-Transfer: the arm moves an attached object towards a goal pose, in straight lines in joint space (paper section 5.1).
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ArmRigidTransfer;
+
+impl<M: Manipulator> Primitive<Tabletop<M>> for ArmRigidTransfer {
+    fn id(&self) -> PrimitiveId {
+        super::ARM_RIGID_TRANSFER
+    }
+
+    fn useful(&self, m: &Tabletop<M>, from: &TabletopState<M>, to: &PartialState<Tabletop<M>>) -> bool {
+        asks_for_transfer(m, from, to, ARM)
+    }
+
+    fn propagate(
+        &self,
+        m: &Tabletop<M>,
+        from: &TabletopState<M>,
+        to: &PartialState<Tabletop<M>>,
+        rng: &mut dyn Rng,
+    ) -> Result<Instances<Tabletop<M>>, Infeasible> {
+        match held_target_in_air(m, from, to) {
+            Some(pose) => transfer(m, from, pose, rng),
+            None => move_group(m, from, to, ARM, from.mode.gap_m()),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Manipulation tasks as files, for any robot: a problem is read, planned from end to end, judged and drawn.
+//!
+//! | question | file |
+//! |---|---|
+//! | what must a robot say of itself? | [`robot`] |
+//! | which primitives, samplers, distances and problems are there? | [`registry`], and for command lines [`program`] |
+//! | what is a problem? | [`problem_file`], [`grasp_families`], [`goal_means`], [`goal_check`], [`goal_edges`] |
+//! | how is it planned? | [`world`] (with the private `supports`), [`planning`] |
+//! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
+//! | where does the time go? | [`profile`] |
+//! | how are files read, written and described? | [`text_file`], [`text`], [`schema`] |
+//! | what does a person see? | [`picture`] |
+//!
+//! Nothing here names a robot.
+
+pub mod export;
+pub mod file_kind;
+pub mod goal_check;
+pub mod goal_edges;
+pub mod goal_means;
+pub mod grasp_families;
+mod near_pairs;
+pub mod picture;
+pub mod plan_file;
+pub mod planning;
+pub mod planning_error;
+pub mod problem_file;
+pub mod profile;
+pub mod program;
+pub mod registry;
+pub mod robot;
+pub mod schema;
+mod supports;
+#[cfg(test)]
+mod testing;
+pub mod text;
+pub mod text_file;
+pub mod verify;
+pub mod world;

@@ -1,0 +1,149 @@
+//! A picture of a problem or a plan: one self-contained SVG or HTML file that needs no network.
+//!
+//! It shows the room from above and from two sides, a close-up of the surface where the object starts, and for a plan
+//! the object's way and the robot at the end of each step, coloured by primitive as in the paper's figures 5 and 6, and
+//! one small view per step.
+//!
+//! | question | file |
+//! |---|---|
+//! | what is told? | [`story`], [`act`], [`model`] |
+//! | how far does what move in a step? | [`travel`] |
+//! | how is a long plan told shortly? | `abridged` |
+//! | where on the page is a point of the world? | `view` |
+//! | what is the silhouette of a solid? | `outline` |
+//! | how are the room, the robot, the ways drawn? | `room`, `figure`, `journey` |
+//! | what is on the page? | `page`, `overview`, `filmstrip` |
+
+mod abridged;
+pub mod act;
+mod badge;
+mod figure;
+mod filmstrip;
+pub mod ink;
+mod journey;
+pub mod model;
+mod outline;
+mod overview;
+mod page;
+pub mod palette;
+mod panel;
+mod room;
+pub mod story;
+pub mod travel;
+mod view;
+
+use std::path::Path;
+
+pub use act::Act;
+pub use story::{Snapshot, Story, StoryStep};
+pub use travel::Travel;
+
+use crate::plan_file::joints::JointFlaw;
+use crate::problem_file::ProblemFileError;
+use crate::robot::RobotError;
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PictureError {
+    /// The room or an object cannot be built.
+    #[error(transparent)]
+    Problem(#[from] ProblemFileError),
+    /// The robot cannot be built.
+    #[error(transparent)]
+    Robot(#[from] RobotError),
+    /// A plan refers to something that is not there.
+    #[error("`{place}` lacks the {what} `{name}`")]
+    Missing {
+        /// Path of the key in the plan file.
+        place: String,
+        /// Kind of thing.
+        what: &'static str,
+        /// Its name.
+        name: String,
+    },
+    /// The joints of a waypoint are not those of the robot.
+    #[error("`{place}`: {flaw}")]
+    Joints {
+        /// Path of the key in the plan file.
+        place: String,
+        /// What is wrong.
+        flaw: Box<JointFlaw>,
+    },
+    /// A number of a plan is too large to be drawn.
+    #[error("`{place}`: {name} is {value:e}, at most {bound} can be drawn")]
+    OutOfRange {
+        /// Path of the key in the plan file.
+        place: String,
+        /// What the number is.
+        name: String,
+        /// The number.
+        value: f64,
+        /// Its largest size.
+        bound: f64,
+    },
+    /// The ending of the file names no format.
+    #[error("{file}: a picture is an .svg or .html file")]
+    Format {
+        /// The file.
+        file: String,
+    },
+}
+
+/// The kinds of picture file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// An SVG image.
+    Svg,
+    /// A page with the image inside.
+    Html,
+}
+
+impl Format {
+    /// The format that the ending of a file name asks for.
+    ///
+    /// # Errors
+    /// [`PictureError::Format`] for any ending but `svg`, `html` and `htm` (in any case).
+    pub fn of_path(path: &Path) -> Result<Self, PictureError> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("svg") => Ok(Self::Svg),
+            Some("html" | "htm") => Ok(Self::Html),
+            _ => Err(PictureError::Format { file: path.display().to_string() }),
+        }
+    }
+}
+
+/// How much a picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Extent {
+    /// The large views, and a small one per step.
+    #[default]
+    Whole,
+    /// The large views only.
+    Overview,
+}
+
+/// The text of the picture file; the same story gives the same bytes. Of a long plan only some steps are drawn, which the
+/// picture says.
+pub fn draw(story: &Story, format: Format, extent: Extent) -> String {
+    let image = page::draw(&story.abridged(), extent);
+    match format {
+        Format::Svg => format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{image}\n"),
+        Format::Html => {
+            let title = if story.problem.title.is_empty() { &story.problem.name } else { &story.problem.title };
+            let title = svg::node::Text::new(ink::clean(title));
+            format!(
+                "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+                 <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}</title>\n\
+                 <style>body {{ margin: 0; background: #ffffff }} \
+                 svg.page {{ display: block; margin: 0 auto; max-width: 100%; height: auto }}</style>\n\
+                 </head>\n<body>\n{}\n</body>\n</html>\n",
+                image.to_string().replacen("<svg ", "<svg class=\"page\" ", 1)
+            )
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

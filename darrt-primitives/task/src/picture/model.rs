@@ -1,0 +1,139 @@
+//! The robot of a picture: its tree, its solids, and which of its links are arm and hand.
+
+use std::sync::Arc;
+
+use darrt_geom::Body;
+use darrt_primitives::kinematics::limit::wrap_to_pi;
+use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
+use darrt_primitives::kinematics::{link_bodies, mesh_folders};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+
+use crate::plan_file::JointTable;
+use crate::robot::{RobotError, RobotFacts};
+
+/// Base and joints of a robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pose {
+    /// x, y (m), yaw (rad).
+    pub base: [f64; 3],
+    /// By variable of the tree, rad or m.
+    pub joints: Vec<f64>,
+}
+
+/// The robot.
+#[derive(Debug, Clone)]
+pub struct Model {
+    tree: Arc<KinematicTree>,
+    bodies: Arc<Vec<Option<Body>>>,
+    pub(super) table: JointTable,
+    /// Variables of the arm that manipulates.
+    arm: Vec<usize>,
+    tool: usize,
+    /// Links with a body, in the order of the tree: what stands on the base.
+    pub(super) base_links: Vec<usize>,
+    /// All that is neither base nor the arm that manipulates.
+    pub(super) trunk_links: Vec<usize>,
+    /// What only the first joint of the arm moves.
+    pub(super) shoulder_links: Vec<usize>,
+    pub(super) arm_links: Vec<usize>,
+    pub(super) hand_links: Vec<usize>,
+    /// Where joints stand at the start of the problem.
+    pub(super) start: Vec<f64>,
+}
+
+impl Model {
+    /// The robot of these facts.
+    ///
+    /// # Errors
+    /// [`RobotError`] when its description has no tree, no such link or joint, or a shape that cannot be used.
+    pub fn new(facts: &RobotFacts) -> Result<Self, RobotError> {
+        let tree = KinematicTree::new(&facts.description)?;
+        let bodies = link_bodies(&facts.description, &tree, &mesh_folders(&facts.mesh_folders))?;
+        let missing = |what: &str, name: &str| RobotError::Key { key: "robot", why: format!("has no {what} `{name}`") };
+        let variable = |name: &String| tree.variable_index(name).ok_or_else(|| missing("joint", name));
+        let arm = facts.arm_joints.iter().map(variable).collect::<Result<Vec<_>, _>>()?;
+        let tool = tree.link_index(&facts.tool_link).ok_or_else(|| missing("link", &facts.tool_link))?;
+        let mut start = tree.neutral();
+        for (name, value) in facts.at_rest.iter().chain(&facts.start) {
+            if let Some(slot) = start.get_mut(variable(name)?) {
+                *slot = *value;
+            }
+        }
+        let above: Vec<Vec<usize>> = (0..tree.link_count()).map(|link| variables_above(&tree, link)).collect();
+        let solid: Vec<usize> = (0..tree.link_count()).filter(|l| matches!(bodies.get(*l), Some(Some(_)))).collect();
+        let moved_by = |wanted: &dyn Fn(&[usize]) -> bool| -> Vec<usize> {
+            solid.iter().copied().filter(|link| above.get(*link).is_some_and(|above| wanted(above))).collect()
+        };
+        let (first, last) = (arm.first().copied(), arm.last().copied());
+        let arm_joints = |above: &[usize]| above.iter().filter(|v| arm.contains(v)).copied().collect::<Vec<_>>();
+        let is_hand = |above: &[usize]| last.is_some_and(|last| above.contains(&last));
+        let is_shoulder = |above: &[usize]| first.is_some_and(|first| arm_joints(above) == [first]) && !is_hand(above);
+        Ok(Self {
+            base_links: moved_by(&|above| above.is_empty()),
+            trunk_links: moved_by(&|above| !above.is_empty() && arm_joints(above).is_empty()),
+            shoulder_links: moved_by(&is_shoulder),
+            arm_links: moved_by(&|above| !arm_joints(above).is_empty() && !is_shoulder(above) && !is_hand(above)),
+            hand_links: moved_by(&is_hand),
+            table: JointTable::new(&facts.description, &tree),
+            tree: Arc::new(tree),
+            bodies: Arc::new(bodies),
+            arm,
+            tool,
+            start,
+        })
+    }
+
+    /// Links and joints.
+    pub fn tree(&self) -> &KinematicTree {
+        &self.tree
+    }
+
+    /// Geometry of one link.
+    pub fn body(&self, link: usize) -> Option<&Body> {
+        self.bodies.get(link).and_then(Option::as_ref)
+    }
+
+    /// World pose of every link of the tree.
+    pub fn link_poses(&self, pose: &Pose) -> Vec<Isometry3<f64>> {
+        let mut poses = vec![Isometry3::identity(); self.tree.link_count()];
+        // A pose that was read from a plan has as many joints as the tree.
+        let written = self.tree.forward(&pose.joints, &world_from_base(&pose.base), &mut poses);
+        debug_assert!(written.is_ok(), "{written:?}");
+        poses
+    }
+
+    /// Pose of the tool frame in the world.
+    pub fn world_from_tool(&self, pose: &Pose) -> Isometry3<f64> {
+        self.link_poses(pose).get(self.tool).copied().unwrap_or_else(Isometry3::identity)
+    }
+
+    /// How far the joints of the arm turn between two poses, summed; a continuous joint goes the short way round.
+    pub(super) fn arm_turns(&self, from: &Pose, to: &Pose) -> f64 {
+        let turn = |variable: &usize| {
+            let (a, b) = (from.joints.get(*variable)?, to.joints.get(*variable)?);
+            let is_continuous = self.tree.variables().get(*variable)?.limit.is_unlimited();
+            Some(if is_continuous { wrap_to_pi(b - a) } else { b - a }.abs())
+        };
+        self.arm.iter().filter_map(turn).sum()
+    }
+}
+
+/// Where a base at x, y and yaw has the robot's root.
+pub(super) fn world_from_base(base: &[f64; 3]) -> Isometry3<f64> {
+    let [x, y, yaw] = *base;
+    Isometry3::from_parts(Translation3::new(x, y, 0.0), UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw))
+}
+
+/// The variables that move a link, from the link upwards.
+fn variables_above(tree: &KinematicTree, mut link: usize) -> Vec<usize> {
+    let mut found = Vec::new();
+    loop {
+        if let Some(LinkMotion::Turning { drive, .. } | LinkMotion::Sliding { drive, .. }) = tree.motion(link) {
+            found.push(drive.variable);
+        }
+        match tree.parent(link) {
+            Some(parent) if parent < link => link = parent,
+            _ => return found,
+        }
+    }
+}

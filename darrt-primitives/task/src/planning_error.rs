@@ -1,0 +1,79 @@
+//! What can keep a problem from being planned at all.
+
+use darrt_geom::GeomError;
+
+use crate::export::UnknownPrimitive;
+use crate::grasp_families::GraspFlaw;
+use crate::plan_file::PlanFileError;
+use crate::problem_file::ProblemFileError;
+use crate::robot::RobotError;
+
+/// A problem that cannot be planned, or a plan that cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanningError {
+    /// The problem file.
+    #[error(transparent)]
+    Problem(#[from] ProblemFileError),
+    /// The robot.
+    #[error(transparent)]
+    Robot(#[from] RobotError),
+    /// The plan has a step that cannot be written.
+    #[error(transparent)]
+    UnknownPrimitive(#[from] UnknownPrimitive),
+    /// A shape or pose.
+    #[error(transparent)]
+    Geometry(#[from] GeomError),
+    /// A number, the start or the goal, as the planner sees it.
+    #[error(transparent)]
+    Core(#[from] darrt_core::error::Error),
+    /// A setting of the primitives.
+    #[error(transparent)]
+    Primitive(#[from] darrt_primitives::error::PrimitiveError),
+    /// The plan file.
+    #[error(transparent)]
+    PlanFile(#[from] PlanFileError),
+    /// A family of grasps does not fit its object.
+    #[error("the grasps of `{object}` cannot be used: `object[{index}].{}`: {}", flaw.key, flaw.source)]
+    Grasp {
+        /// The object.
+        object: String,
+        /// Its index in the file.
+        index: usize,
+        /// The key at fault, and why.
+        flaw: GraspFlaw,
+    },
+    /// A goal for an object that is not there.
+    #[error("the goal names the object `{name}`, which the problem does not have")]
+    UnknownObject {
+        /// The name.
+        name: String,
+    },
+    /// The object cannot be at its goal: something fixed is in the way there.
+    #[error("the goal of `{object}` is blocked: {blame}")]
+    GoalBlocked {
+        /// The object.
+        object: String,
+        /// What is in the way, and where.
+        blame: String,
+    },
+    /// The primitives and grasps of the problem do not suffice for any of the goals of an object.
+    #[error("the goal of `{object}` cannot be reached: {why}")]
+    GoalWithoutMeans {
+        /// The object.
+        object: String,
+        /// What each of its goals lacks.
+        why: String,
+    },
+    /// Plans shall be improved without an end.
+    #[error("plans can only be improved within a limit: give a time limit or a number of iterations")]
+    NoLimit,
+    /// A primitive needs another one that the problem leaves out.
+    #[error("`{primitive}` is allowed but not `{needs}`, which it is made of")]
+    MissingPrimitive {
+        /// The primitive that is allowed.
+        primitive: String,
+        /// What it needs.
+        needs: String,
+    },
+}

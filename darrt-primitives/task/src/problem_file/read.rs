@@ -1,0 +1,173 @@
+//! Reading a problem file: guards first, then TOML, then defaults, then validation.
+
+use std::path::Path;
+
+use super::ProblemFile;
+use super::error::ProblemFileError;
+use super::nesting::check_nesting;
+use super::suggest::{nearest_expected, shown};
+use super::toml_path::path_at;
+use crate::file_kind::FileKind;
+use crate::text_file;
+pub use crate::text_file::MAX_NESTING;
+
+/// Largest accepted problem file in bytes (4 MiB).
+pub const MAX_BYTES: u64 = 4 * 1024 * 1024;
+
+impl ProblemFile {
+    /// Reads, completes and validates the problem file at `path`.
+    ///
+    /// Relative paths of meshes and of a robot description are taken from the folder of the file.
+    ///
+    /// # Errors
+    /// When the file is not a regular one, cannot be read, is larger than [`MAX_BYTES`], nested deeper than [`MAX_NESTING`], is not TOML, or
+    /// breaks a rule of the format; the error names the file, the place, the value and the bound.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ProblemFileError> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        // Plans may be larger than problems, so even what is too large is looked at.
+        let text = text_file::read(path, MAX_BYTES)
+            .map_err(|error| other_kind(FileKind::of_file(path), &name).unwrap_or_else(|| error.into()))?;
+        let mut problem = parse(&text, &name)?;
+        problem.validate(&name)?;
+        if let Some(folder) = path.parent() {
+            problem.resolve_paths(folder);
+        }
+        Ok(problem)
+    }
+
+    /// Parses, completes and validates a problem in TOML; `source_name` is how errors call the text.
+    ///
+    /// Relative paths inside are left as they are, that is relative to the working folder.
+    ///
+    /// # Errors
+    /// As [`ProblemFile::read`], except for what concerns the file system.
+    pub fn from_toml(text: &str, source_name: &str) -> Result<Self, ProblemFileError> {
+        let problem = parse(text, source_name)?;
+        problem.validate(source_name)?;
+        Ok(problem)
+    }
+
+    /// The problem as a complete problem file, every default written out.
+    ///
+    /// # Errors
+    /// When a count exceeds what TOML can hold (2^63 - 1); no problem that was read from TOML has one.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string(self)
+    }
+}
+
+/// The error for a file of another kind.
+fn other_kind(kind: Option<FileKind>, file: &str) -> Option<ProblemFileError> {
+    let what = kind?.instead_of_problem(file)?;
+    Some(ProblemFileError::OtherKind { file: file.to_owned(), what })
+}
+
+/// Guards, TOML and defaults; no validation.
+fn parse(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileError> {
+    parse_toml(text, source_name).map_err(|error| other_kind(FileKind::of_text(text), source_name).unwrap_or(error))
+}
+
+fn parse_toml(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileError> {
+    text_file::check(text, source_name, MAX_BYTES, check_nesting)?;
+    let mut problem: ProblemFile = toml::from_str(text).map_err(|error| {
+        let place = error.span().unwrap_or(0..text.len());
+        let (line, column) = text_file::line_and_column(text, place.start);
+        ProblemFileError::Syntax {
+            file: source_name.to_owned(),
+            line,
+            column,
+            key: path_at(text, &place).map(|path| shown(&path)),
+            nearest: nearest_expected(error.message()).map(|name| shown(&name)),
+            message: text_file::one_line(error.message()),
+        }
+    })?;
+    problem.normalise();
+    Ok(problem)
+}
+
+impl ProblemFile {
+    /// Fills in the defaults that depend on other keys.
+    fn normalise(&mut self) {
+        for object in &mut self.objects {
+            object.normalise();
+        }
+        for goal in &mut self.goal.objects {
+            goal.normalise();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem_file::ShapeSpec;
+    use crate::text_file::TextFileError as T;
+    use darrt_geom::FileError as F;
+
+    fn message(text: &str) -> String {
+        ProblemFile::from_toml(text, "bad.toml").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn broken_toml_names_the_line_and_column() {
+        assert!(message("format = \"darrt-problem\"\nversion = = 1\n").starts_with("bad.toml:2:"));
+        assert!(message("\"é\" = 1\n").contains("bad.toml:1:1: at `é`: unknown field `é`"));
+        assert!(message("").contains("missing field `format`"));
+    }
+
+    #[test]
+    fn deep_nesting_is_refused_before_parsing() {
+        let arrays = format!("name = {}", "[".repeat(10_000));
+        assert!(message(&arrays).contains("bad.toml:1:72: nested deeper than 64 levels"));
+        let dots = format!("a{} = 1", ".a".repeat(10_000));
+        assert!(message(&dots).contains("nested deeper than 64"));
+        let tables = format!("name = {}", "{a=".repeat(10_000));
+        assert!(message(&tables).contains("nested deeper than 64"));
+        // As deep as allowed, still no trouble for the stack.
+        let allowed = format!("name = {}1{}", "[".repeat(63), "]".repeat(63));
+        assert!(ProblemFile::from_toml(&allowed, "bad.toml").is_err());
+    }
+
+    #[test]
+    fn large_files_are_refused_by_their_size_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("large.toml");
+        // A sparse file: 100 MB that are never written.
+        std::fs::File::create(&path).unwrap().set_len(100_000_000).unwrap();
+        let message = ProblemFile::read(&path).unwrap_err().to_string();
+        assert!(message.contains("large.toml"), "{message}");
+        assert!(message.contains("100000000") && message.contains("4194304"), "{message}");
+        let text = " ".repeat(usize::try_from(MAX_BYTES).unwrap() + 1);
+        assert!(self::tests::message(&text).contains("4194305"));
+    }
+
+    #[test]
+    fn missing_files_folders_and_binary_files_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("missing.toml");
+        assert!(matches!(ProblemFile::read(&missing), Err(ProblemFileError::Text(T::File(F::Unreadable { .. })))));
+        let not_a_file = ProblemFile::read(folder.path());
+        assert!(matches!(not_a_file, Err(ProblemFileError::Text(T::File(F::NotAFile { .. })))));
+        let binary = folder.path().join("binary.toml");
+        std::fs::write(&binary, b"abc\xff\xfe").unwrap();
+        let not_text = ProblemFile::read(&binary);
+        assert!(matches!(not_text, Err(ProblemFileError::Text(T::File(F::NotUtf8 { offset: 3, .. })))));
+    }
+
+    #[test]
+    fn meshes_are_found_beside_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mesh.toml");
+        let text = crate::testing::builtin_text("bowl").unwrap();
+        let mesh = "\n[[obstacle]]\nname = \"lamp\"\nshape = { mesh = { file = \"lamp.stl\" } }\nat = [0, 1, 0]\n";
+        std::fs::write(&path, format!("{text}{mesh}")).unwrap();
+        let problem = ProblemFile::read(&path).unwrap();
+        let ShapeSpec::Mesh { file, scale } = &problem.obstacle("lamp").unwrap().shape else {
+            panic!("the lamp is a mesh");
+        };
+        assert_eq!((file, *scale), (&folder.path().join("lamp.stl"), 1.0));
+        let message = problem.scene().unwrap_err().to_string();
+        assert!(message.contains("lamp.stl") && message.contains("obstacle["), "{message}");
+    }
+}

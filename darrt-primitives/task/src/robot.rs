@@ -1,0 +1,148 @@
+//! What a robot must say of itself so that problems for it can be read, planned, judged and drawn.
+//!
+//! A planner moves a [`Manipulator`]; a judge must not trust the planner's code and gets [`RobotFacts`] instead: the
+//! description, and the names that say what is arm, hand and finger in it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use darrt_primitives::kinematics::{RobotDescription, UrdfError};
+use darrt_primitives::manipulator::{Configuration, Manipulator};
+
+use crate::problem_file::Robot as RobotSettings;
+use crate::problem_file::suggest::nearest;
+
+/// A robot that problem files can be about.
+///
+/// # Laws
+/// - The links of [`TaskRobot::facts`], moved by [`TaskRobot::joint_values`], stand where [`Manipulator::link_poses`] says.
+/// - [`RobotFacts::start`] holds of the configuration that [`TaskRobot::build`] returns.
+pub trait TaskRobot: Manipulator + Sized {
+    /// Its name, for `model` in problem files.
+    const MODEL: &'static str;
+
+    /// The names of the postures of the arm, for problem files.
+    const POSTURES: &'static [&'static str];
+
+    /// The robot of the table `[robot]` of a problem, and where its arm starts.
+    ///
+    /// # Errors
+    /// [`RobotError`] with the key at fault.
+    fn build(settings: &RobotSettings) -> Result<(Self, Self::Joints), RobotError>;
+
+    /// The same robot as data.
+    ///
+    /// # Errors
+    /// [`RobotError`] with the key at fault.
+    fn facts(settings: &RobotSettings) -> Result<RobotFacts, RobotError>;
+
+    /// The joints of the arm in the posture of this name.
+    fn posture(&self, name: &str) -> Option<Self::Joints>;
+
+    /// The values of the variables of the kinematic tree of [`RobotFacts::description`] (rad or m, in the tree's order), with
+    /// the hand open by `gap_m`.
+    fn joint_values(&self, q: &Configuration<Self::Joints>, gap_m: f64) -> Vec<f64>;
+
+    /// The same robot that draws where it stands from a model of where its arm reaches, if it has one.
+    #[must_use]
+    fn with_bases_from_reachability(self) -> Self {
+        self
+    }
+}
+
+/// Which joint of the description has which value.
+pub type JointValues = Vec<(String, f64)>;
+
+/// A robot as data. Links and joints are named as in the description.
+#[derive(Debug, Clone)]
+pub struct RobotFacts {
+    /// Links, joints and shapes.
+    pub description: Arc<RobotDescription>,
+    /// Where its meshes are looked for.
+    pub mesh_folders: Vec<PathBuf>,
+    /// The joints of the arm that manipulates, from the base outwards. The last one moves the hand.
+    pub arm_joints: Vec<String>,
+    /// The joint that opens the hand as it grows.
+    pub finger_joint: String,
+    /// The link whose frame is the tool frame: x out of the hand, y the opening axis.
+    pub tool_link: String,
+    /// The links that may touch what is manipulated; the tips among them.
+    pub finger_links: Vec<String>,
+    /// The links whose inner faces are the pads, that on the side of +y first.
+    pub tip_links: [String; 2],
+    /// Do the soft limits of the description bound the arm, or the hard ones?
+    pub is_limited_softly: bool,
+    /// Where the problem puts the joints at the start, as far as it says.
+    pub start: JointValues,
+    /// Where joints stand that it does not speak of, for pictures: the open hand.
+    pub at_rest: JointValues,
+    /// Pairs of links that must be kept apart.
+    pub self_pairs: Vec<[String; 2]>,
+    /// Length of a pad from the tip back, metres.
+    pub pad_length_m: f64,
+    /// Force of each finger on what it holds, newton.
+    pub grip_force_n: f64,
+    /// The heaviest object that the arm carries, kilograms.
+    pub payload_kg: f64,
+    /// The largest force with which the hand pushes sideways, newton.
+    pub push_force_n: f64,
+}
+
+/// A robot that cannot be built as a problem asks.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RobotError {
+    /// The description cannot be used.
+    #[error(transparent)]
+    Urdf(#[from] UrdfError),
+    /// A start of an arm has the wrong number of joints.
+    #[error("`{key}`: the arm's start has {found} joints, it must have {expected}")]
+    JointCount {
+        /// The key.
+        key: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many the arm has.
+        expected: usize,
+    },
+    /// A posture that the robot does not have.
+    #[error("`{key}`: there is no posture `{name}`{}; there are {}", suggestion(nearest.as_deref()), available.join(", "))]
+    UnknownPosture {
+        /// The key.
+        key: String,
+        /// The name.
+        name: String,
+        /// The nearest name.
+        nearest: Option<String>,
+        /// All names.
+        available: &'static [&'static str],
+    },
+    /// A key that this robot cannot follow.
+    #[error("`{key}`: {why}")]
+    Key {
+        /// The key.
+        key: &'static str,
+        /// Why not.
+        why: String,
+    },
+    /// What only this kind of robot knows.
+    #[error(transparent)]
+    Model(Box<dyn std::error::Error + Send + Sync>),
+}
+
+impl RobotError {
+    /// There is no posture `name`, which `key` asks for, among those of `R`.
+    pub fn unknown_posture<R: TaskRobot>(key: impl Into<String>, name: &str) -> Self {
+        let nearest = nearest(name, R::POSTURES.iter().copied()).map(str::to_owned);
+        Self::UnknownPosture { key: key.into(), name: name.to_owned(), nearest, available: R::POSTURES }
+    }
+
+    /// An error of the robot's own model.
+    pub fn model(error: impl std::error::Error + Send + Sync + 'static) -> Self {
+        Self::Model(Box::new(error))
+    }
+}
+
+fn suggestion(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |name| format!(", did you mean `{name}`?"))
+}

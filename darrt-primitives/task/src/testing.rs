@@ -1,0 +1,93 @@
+//! A robot and problems for the unit tests of this crate: the PR2 and what it has built in, by way of texts, because the crate
+//! that is tested is not the one that the PR2 knows.
+
+use std::path::PathBuf;
+
+use darrt_core::budget::Cancel;
+use darrt_core::observe::Silent;
+pub(crate) use darrt_pr2::robot::Pr2;
+use darrt_primitives::manipulator::{Configuration, Manipulator};
+use darrt_task::robot::TaskRobot as Outside;
+
+use crate::plan_file::PlanFile;
+use crate::planning::{PlanRequest, PlanResult, plan};
+use crate::problem_file::collection::{BuiltIn, Collection, ProblemGroup};
+use crate::problem_file::{ProblemFile, ProblemFileError, Robot};
+use crate::registry::Registry;
+use crate::robot::{RobotError, RobotFacts, TaskRobot};
+use crate::verify::{Proof, Refusal};
+
+type Joints = <Pr2 as Manipulator>::Joints;
+
+pub(crate) fn builtin_text(name: &str) -> Result<&'static str, darrt_task::problem_file::ProblemFileError> {
+    darrt_pr2::problems::builtin_text(name)
+}
+
+pub(crate) fn builtin(name: &str) -> Result<ProblemFile, ProblemFileError> {
+    ProblemFile::from_toml(builtin_text(name).unwrap_or_default(), &format!("built-in {name}"))
+}
+
+pub(crate) fn builtin_names() -> [&'static str; 6] {
+    darrt_pr2::problems::builtin_names()
+}
+
+pub(crate) fn registry() -> Registry<Pr2> {
+    const BOWL: [BuiltIn; 1] = [BuiltIn { name: "bowl", text: include_str!("../../../darrt-pr2/scenes/bowl.toml") }];
+    Registry::new().with_problems(Collection::new([ProblemGroup { title: "One", problems: &BOWL }]))
+}
+
+pub(crate) fn facts(problem: &ProblemFile) -> RobotFacts {
+    <Pr2 as TaskRobot>::facts(&problem.robot).unwrap()
+}
+
+pub(crate) fn planned(request: &PlanRequest) -> PlanResult {
+    plan(&registry(), request, &Cancel::new(), &mut Silent).unwrap()
+}
+
+pub(crate) fn verify(plan: &PlanFile) -> Result<Proof, Refusal> {
+    crate::verify::verify(plan, &facts(&plan.problem))
+}
+
+/// The same table, as the PR2 knows it.
+fn outside(settings: &Robot) -> darrt_task::problem_file::Robot {
+    serde_json::from_value(serde_json::to_value(settings).unwrap()).unwrap()
+}
+
+impl TaskRobot for Pr2 {
+    const MODEL: &'static str = <Self as Outside>::MODEL;
+    const POSTURES: &'static [&'static str] = <Self as Outside>::POSTURES;
+
+    fn build(settings: &Robot) -> Result<(Self, Joints), RobotError> {
+        <Self as Outside>::build(&outside(settings)).map_err(RobotError::model)
+    }
+
+    fn facts(settings: &Robot) -> Result<RobotFacts, RobotError> {
+        let facts = <Self as Outside>::facts(&outside(settings)).map_err(RobotError::model)?;
+        let folders: Vec<PathBuf> = facts.mesh_folders;
+        Ok(RobotFacts {
+            description: facts.description,
+            mesh_folders: folders,
+            arm_joints: facts.arm_joints,
+            finger_joint: facts.finger_joint,
+            tool_link: facts.tool_link,
+            finger_links: facts.finger_links,
+            tip_links: facts.tip_links,
+            is_limited_softly: facts.is_limited_softly,
+            start: facts.start,
+            at_rest: facts.at_rest,
+            self_pairs: facts.self_pairs,
+            pad_length_m: facts.pad_length_m,
+            grip_force_n: facts.grip_force_n,
+            payload_kg: facts.payload_kg,
+            push_force_n: facts.push_force_n,
+        })
+    }
+
+    fn posture(&self, name: &str) -> Option<Joints> {
+        Outside::posture(self, name)
+    }
+
+    fn joint_values(&self, q: &Configuration<Joints>, gap_m: f64) -> Vec<f64> {
+        Outside::joint_values(self, q, gap_m)
+    }
+}

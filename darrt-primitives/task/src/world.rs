@@ -1,0 +1,233 @@
+//! From a problem file to a problem that the planner can solve: robot, domain, start, goal.
+
+use std::sync::Arc;
+
+use darrt_core::primitive::PrimitiveId;
+use darrt_core::state::{ObjectId, State};
+use darrt_geom::scene::Scene;
+use darrt_primitives::arm_space::ArmSpace;
+use darrt_primitives::contact::MAX_LEAN;
+use darrt_primitives::goal::{Grip, ObjectGoal, TabletopGoal, Whereabouts};
+use darrt_primitives::manipulator::{Configuration, Hand};
+use darrt_primitives::mode::Mode;
+use darrt_primitives::object_space::{ObjectSpace, ObjectSpaceParts};
+use darrt_primitives::primitive::{BASE_RIGID_TRANSFER, BASE_TRANSIT};
+use darrt_primitives::push::edge_stop::{EdgeRule, RimReach};
+use darrt_primitives::surroundings::NearPair;
+use darrt_primitives::tabletop::{
+    ActionSettings, Movable, ObjectFriction, PlaceSettings, PushSettings, Tabletop, TabletopState,
+};
+use nalgebra::{Isometry3, Point2, Vector3};
+
+use crate::grasp_families::{families, lift_m};
+use crate::planning_error::PlanningError;
+use crate::problem_file::geometry::Geometry;
+use crate::problem_file::{self as file, GoalState, GoalTarget, ProblemFile, Symmetry};
+use crate::registry::Registry;
+use crate::robot::{RobotError, TaskRobot};
+use crate::supports::Supports;
+
+/// Gap of the empty gripper where no action asks for another, metres.
+const TRAVEL_GAP: f64 = 0.08;
+/// Free distance that a rim grasp keeps between fingertips and edge, metres.
+const RIM_CLEARANCE: f64 = 0.01;
+/// How much the fingers open to let go of an object, metres: at a table's corner there is no room for more.
+const RELEASE_OPENING: f64 = 0.01;
+/// Share of object samples that stand on a surface.
+const SURFACE_SHARE: f64 = 0.7;
+
+/// Everything that a problem file says, built.
+#[derive(Debug)]
+pub struct Built<M: TaskRobot> {
+    /// M.
+    pub world: Tabletop<M>,
+    /// The initial state.
+    pub start: TabletopState<M>,
+    /// G.
+    pub goal: TabletopGoal,
+    /// The fixed bodies and the surfaces.
+    pub scene: Scene,
+    /// What the problem itself puts nearer to each other than the least margin.
+    pub near: Vec<NearPair>,
+}
+
+/// Builds robot, domain, start and goal.
+///
+/// # Errors
+/// [`PlanningError`] with the key at fault when the robot's description, a shape, a grasp or a number cannot be used.
+pub fn build<M: TaskRobot>(registry: &Registry<M>, problem: &ProblemFile) -> Result<Built<M>, PlanningError> {
+    let (robot, arm) = M::build(&problem.robot)?;
+    build_with(registry, problem, robot, arm)
+}
+
+/// [`build`], with a robot that is built already, whose arm starts at `arm`.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_with<M: TaskRobot>(
+    registry: &Registry<M>,
+    problem: &ProblemFile,
+    robot: M,
+    arm: M::Joints,
+) -> Result<Built<M>, PlanningError> {
+    let geometry = problem.geometry()?;
+    let bounds = &problem.bounds;
+    let lower = [bounds.base_x[0], bounds.base_y[0]];
+    let upper = [bounds.base_x[1], bounds.base_y[1]];
+    let space: ArmSpace<M::Joints> = ArmSpace::new(lower, upper, robot.limits(), robot.joint_weights_m())?;
+
+    let supports = Supports::new(problem, &geometry)?;
+    let objects = problem
+        .objects
+        .iter()
+        .zip(&geometry.objects)
+        .enumerate()
+        .map(|(index, (object, solid))| movable(problem, (index, object), solid, (&geometry, &supports), robot.hand()))
+        .collect::<Result<Vec<_>, _>>()?;
+
+    let allowed: Vec<_> = registry.allowed(problem).map(|(id, _)| id).collect();
+    let mut settings = settings(problem, &allowed, &robot)?;
+    // A posture that the limits in force forbid is no place to travel through.
+    settings.postures.retain(|posture| space.contains_arm(posture));
+    let robot = Arc::new(robot);
+    let goal = goal(problem, &geometry, &supports)?;
+    let rests_on = geometry.objects.iter().enumerate().map(|(index, o)| supports.holding(index, o.surface));
+    let mode = Mode::resting(rests_on, TRAVEL_GAP);
+    let mut world = Tabletop::new(robot, space, objects, supports.all, geometry.scene.bodies(), settings)?
+        .with_primitives(&registry.further());
+    let start = State {
+        robot: Configuration { base: problem.robot.base, arm },
+        objects: geometry.objects.iter().map(|o| o.world_from_object).collect(),
+        mode,
+    };
+    let near = crate::near_pairs::accept(&mut world, &start, &goal);
+    Ok(Built { world, start, goal, scene: geometry.scene, near })
+}
+
+fn movable(
+    problem: &ProblemFile,
+    (index, object): (usize, &file::Object),
+    solid: &file::geometry::StartingObject,
+    (geometry, supports): (&Geometry, &Supports),
+    hand: &dyn Hand,
+) -> Result<(ObjectSpace, Movable), PlanningError> {
+    let reach_m = solid.body.parts.iter().fold(0.0_f64, |most, part| {
+        let (centre, radius) = part.shape.bounding_sphere();
+        most.max((part.body_from_shape * centre).coords.norm() + radius)
+    });
+    let radius = object.shape.round_radius();
+    let bounds = &problem.bounds;
+    let space = ObjectSpace::new(ObjectSpaceParts {
+        lower: [bounds.object_x[0], bounds.object_y[0], bounds.object_z[0]],
+        upper: [bounds.object_x[1], bounds.object_y[1], bounds.object_z[1]],
+        is_round: object.symmetry() == Symmetry::Z,
+        metres_per_rad: radius.unwrap_or(reach_m),
+        half_height_m: solid.depth_below_origin,
+        surfaces: supports.surfaces_of(index).cloned().collect(),
+        surface_share: SURFACE_SHARE,
+        edge_margin_m: problem.safety.edge_margin_m,
+    })?;
+    let rim = RimReach { insertion: object.rim.insertion_m, clearance: RIM_CLEARANCE, ..RimReach::default() };
+    let named = |flaw| PlanningError::Grasp { object: object.name.clone(), index, flaw };
+    let movable = Movable {
+        body: solid.body.clone(),
+        round_radius_m: radius,
+        half_height_m: solid.depth_below_origin,
+        reach_m,
+        is_pushable: object.pushable(),
+        surfaces: supports.of_object(index).into(),
+        grasps: families(object, hand).map_err(named)?,
+        rim,
+        lift_m: lift_m(object),
+        mass_kg: object.mass_kg,
+        friction: ObjectFriction { table: object.friction.table, fingers: object.friction.fingers },
+        max_tilt_rad: object.max_tilt_deg().to_radians(),
+        brinks: crate::goal_edges::brinks(problem, index, solid.depth_below_origin, geometry, supports),
+    };
+    Ok((space, movable))
+}
+
+fn settings<M: TaskRobot>(
+    problem: &ProblemFile,
+    allowed: &[PrimitiveId],
+    robot: &M,
+) -> Result<ActionSettings<M::Joints>, PlanningError> {
+    let push = &problem.push;
+    let postures = problem.transit.postures.iter().enumerate().map(|(index, name)| {
+        let unknown = || RobotError::unknown_posture::<M>(format!("transit.postures[{index}]"), name);
+        robot.posture(name).ok_or_else(unknown)
+    });
+    Ok(ActionSettings {
+        push: PushSettings {
+            gap_m: push.gap_m,
+            fingertip_clearance_m: push.fingertip_clearance_m,
+            leans_rad: push.leans_deg.iter().map(|lean| lean.to_radians().min(MAX_LEAN)).collect(),
+            standoff_m: push.standoff_m.planned()?,
+            approach_m: push.approach_m.planned()?,
+            position_error_m: push.position_error_m,
+            max_turn_rad: push.max_turn_deg.to_radians(),
+            edge_rule: match push.edge_rule {
+                file::EdgeRule::NearestEdgePoint => EdgeRule::NearestEdgePoint,
+                file::EdgeRule::LineCrossing => EdgeRule::LineCrossing,
+            },
+            edge_distance_m: push.edge_distance_m,
+        },
+        place: PlaceSettings {
+            approach_directions: problem
+                .place
+                .approach_directions
+                .iter()
+                .filter_map(|d| Vector3::from(*d).try_normalize(1e-9))
+                .collect(),
+            approach_m: problem.place.approach_m.planned()?,
+            retreat_m: problem.place.retreat_m.planned()?,
+            release_opening_m: RELEASE_OPENING,
+        },
+        safety: problem.safety.settings(),
+        retreat_m: push.retreat_m.planned()?,
+        line_step_m: 0.05,
+        drives: [allowed.contains(&BASE_TRANSIT), allowed.contains(&BASE_RIGID_TRANSFER)],
+        base_tries: 24,
+        grasp_tries: 4,
+        postures: postures.collect::<Result<_, RobotError>>()?,
+        travel_gap_m: TRAVEL_GAP,
+    })
+}
+
+fn goal(problem: &ProblemFile, geometry: &Geometry, supports: &Supports) -> Result<TabletopGoal, PlanningError> {
+    let mut groups = Vec::new();
+    for (name, alternatives) in problem.goal.by_object() {
+        let unknown = || PlanningError::UnknownObject { name: name.to_owned() };
+        let index = problem.objects.iter().position(|o| o.name == name).ok_or_else(unknown)?;
+        geometry.objects.get(index).ok_or_else(unknown)?;
+        let group = alternatives.iter().filter_map(|goal| one_goal(index, goal, geometry, supports));
+        groups.push(group.collect());
+    }
+    Ok(TabletopGoal::new(groups))
+}
+
+/// `None` when the goal's keys contradict each other, which the file's validation has refused.
+fn one_goal(object: usize, goal: &file::ObjectGoal, geometry: &Geometry, supports: &Supports) -> Option<ObjectGoal> {
+    let scene = &geometry.scene;
+    let solid = geometry.objects.get(object)?;
+    let centre = |pose: Isometry3<f64>| Whereabouts::At(pose.translation.vector);
+    let whereabouts = match goal.target()? {
+        GoalTarget::On { .. } | GoalTarget::At { .. } => centre(solid.world_from_goal(goal, scene)?),
+        GoalTarget::Within { surface, region } => {
+            let index = scene.surfaces().iter().position(|s| s.name() == surface)?;
+            Whereabouts::Within {
+                support: supports.holding(object, index),
+                part: scene.surfaces().get(index)?.clone(),
+                min: Point2::from(region.min),
+                max: Point2::from(region.max),
+            }
+        }
+    };
+    let grip = match goal.state() {
+        GoalState::Released => Grip::Released,
+        GoalState::Held => Grip::Held,
+        GoalState::Any => Grip::Any,
+    };
+    let yaw = goal.yaw.map(|yaw| (yaw, goal.yaw_tolerance));
+    Some(ObjectGoal { object: ObjectId::new(object), whereabouts, tolerance_m: goal.tolerance_m, yaw, grip })
+}
