@@ -10,7 +10,7 @@
 //! | hold the arm so that the base can drive | `fold`, `width` |
 //! | find a base and an arm configuration for a hand pose | [`stance`] |
 //! | know how far the hand must travel to push or grasp | [`approach`] |
-//! | push an object | [`push`] |
+//! | push an object, or make it slide with a hand of your own | [`push`], [`mod@slide`] |
 //! | grasp and lift | [`pick`] |
 //! | carry to a pose in the air | [`transfer`] |
 //! | set down | [`place`] |
@@ -26,6 +26,7 @@ pub mod pick;
 pub mod place;
 pub mod push;
 pub mod retreat;
+pub mod slide;
 pub mod stance;
 pub mod transfer;
 pub mod travel;

@@ -44,7 +44,7 @@ impl Primitive<PuckWorld> for Nudge {
         *end.objects.get_mut(id.index()).ok_or(Infeasible::NoContact)? = along(&at, stroke);
         let mode = touching.mode.clone();
         let nudge = Instance {
-            primitive: PrimitiveId::new(9, "Nudge"),
+            primitive: self.id(),
             motion: Box::new(Waypoints::new(vec![touching, end], &[stroke], mode).ok_or(Infeasible::NoProgress)?),
             contacts: ComponentSet::EMPTY.with(ComponentId::Object(id)),
             moves: ComponentSet::ROBOT.with(ComponentId::Object(id)),

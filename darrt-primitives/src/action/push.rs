@@ -1,21 +1,16 @@
 //! Pushing a round object along the ray through its centre, or on an arc that begins along it.
 
-use darrt_core::motion::Instance;
-use darrt_core::primitive::{Infeasible, Instances};
-use darrt_core::state::{ComponentId, ComponentSet, ObjectId};
-use nalgebra::{Isometry3, Point2};
+use darrt_core::primitive::{Infeasible, Instances, PrimitiveId};
+use darrt_core::state::ObjectId;
+use nalgebra::Isometry3;
 use rand::{Rng, RngExt};
 
 use super::Chain;
-use super::line::{Line, follow_in_room, follow_path, moved};
 use super::retreat::retreat;
-use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
-use super::travel::travel;
-use crate::arm_motion::{ArmMotion, Carried, Waypoint};
+use super::slide::{SlidingHand, SlidingWay, assemble, find};
+use super::stance::Probe;
 use crate::contact::HandStance;
-use crate::manipulator::{Configuration, Manipulator};
-use crate::mode::{Contacts, TouchReason};
-use crate::primitive;
+use crate::manipulator::Manipulator;
 use crate::tabletop::{Tabletop, TabletopState};
 
 mod course;
@@ -28,19 +23,6 @@ pub(super) use hand::Pushable;
 /// A push that is cut short, by what stands in the way or because the arm reaches no farther, is not worth the approach if it
 /// is shorter than this, metres.
 const LEAST_PUSH_M: f64 = 0.02;
-/// Rounding that is forgiven in the length of a push, metres.
-const ROUNDING_M: f64 = 1e-9;
-
-/// The arm's way of one push: down behind the object, to the contact, along the push.
-struct Way<J> {
-    base: [f64; 3],
-    /// From high above the standoff point down to it.
-    down: Vec<J>,
-    /// At the contact.
-    contact: J,
-    /// Along the push as far as the arm reaches.
-    along: Line<J>,
-}
 
 /// Share of the pushes that may take the object as near to other things as the rules allow; the others keep the wanted margin.
 const CLOSE_SHARE: f64 = 0.25;
@@ -92,6 +74,46 @@ pub fn push<M: Manipulator>(
     attempt.run(&straight?, rng).map_err(|refusal| refusal.why)
 }
 
+/// The straight way of `object` to `target` or, where that lies off the support or too near to its edge, to the edge; not all
+/// the way if something stands in its way, but far enough to settle what its place may be off. For primitives of your own;
+/// [`push`] has arcs besides.
+///
+/// # Errors
+/// As [`push`], but for what the hand and the arm need.
+pub fn straight_way<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    object: ObjectId,
+    target: &Isometry3<f64>,
+    rng: &mut dyn Rng,
+) -> Result<SlidingWay, Infeasible> {
+    let pushable = Pushable::new(m, from, object)?;
+    let settle_m = pushable.steady(m)?.settle_m.max(LEAST_PUSH_M);
+    let end = end_of_push(m, &pushable, target, settle_m, rng)?;
+    let course = Course::straight(m, from, &pushable, &end, settle_m, 0)?;
+    Ok(SlidingWay { slide: course.slide, least_m: course.least_m })
+}
+
+/// The hand behind `object` on its way, both fingertips at its rim, with room around the hand: as Push stands, for an
+/// instance of `primitive`.
+///
+/// # Errors
+/// [`Infeasible::NoContact`] where such a hand does not push, [`Infeasible::Blocked`].
+pub fn hand_behind<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    (object, way): (ObjectId, &SlidingWay),
+    stance: &HandStance,
+    primitive: PrimitiveId,
+) -> Result<SlidingHand, Infeasible> {
+    let pushable = Pushable::new(m, from, object)?;
+    let beside = from.mode.opened_to(pushable.gap_m).and_then(|mode| mode.engaged_with(object));
+    let probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
+    let heading = way.slide.heading().ok_or(Infeasible::NoProgress)?;
+    let place = HandPlace::new(m, &pushable, &heading, stance, &probe)?;
+    Ok(SlidingHand { primitive, ..place.hand(&pushable) })
+}
+
 /// A try to push an object along some way.
 struct Attempt<'a, M: Manipulator> {
     m: &'a Tabletop<M>,
@@ -136,122 +158,14 @@ impl<M: Manipulator> Attempt<'_, M> {
                 retreat(m, &mut chain, m.settings().retreat_m)?;
                 chain
             };
-            let wanted = Wanted { world_from_tool: &place.at_contact, tries: m.settings().base_tries };
-            let push = Pushing { pushable, place: &place, course };
-            match stance(m, from, &wanted, rng, |q, care| way_of(m, q, &push, &mut self.probe, care)) {
-                Ok(way) => return Ok(assemble(m, retreated, &push, &way, rng)?),
+            let hand = place.hand(pushable);
+            let way = SlidingWay { slide: course.slide, least_m: course.least_m };
+            match find(m, from, (&hand, &way), &mut self.probe, |_| true, rng) {
+                Ok(arm_way) => return Ok(assemble(m, retreated, (&hand, &way), &arm_way, rng)?),
                 Err(why) => refusal = Refusal { why, is_of_hand: false },
             }
             chain = Some(retreated);
         }
         Err(refusal)
     }
-}
-
-/// What is pushed, from where, and how.
-struct Pushing<'a> {
-    pushable: &'a Pushable<'a>,
-    place: &'a HandPlace,
-    course: &'a Course,
-}
-
-impl Pushing<'_> {
-    /// Would the object be left far enough from the edge when `share` of the push is done?
-    fn keeps_from_edge<M: Manipulator>(&self, m: &Tabletop<M>, share: f64) -> bool {
-        let at = self.course.slide.at(share).translation.vector.xy();
-        m.keeps_from_edge(self.pushable.object, self.pushable.on, &Point2::from(at))
-    }
-}
-
-/// The arm's way from a configuration at the contact, if it reaches far enough and its cornerstones are clear.
-fn way_of<M: Manipulator>(
-    m: &Tabletop<M>,
-    q: &Configuration<M::Joints>,
-    push: &Pushing<'_>,
-    probe: &mut Probe<'_, M>,
-    care: &mut Care,
-) -> Result<Way<M::Joints>, Refused<M>> {
-    let Pushing { pushable, place, course } = push;
-    let touching = contacts(pushable.object);
-    probe.check(q, &touching, care)?;
-    // The first step decides most often, so it is tried before anything else.
-    let object_from_tool = course.slide.from().inverse() * place.at_contact;
-    let along =
-        follow_path(m, &q.base, &q.arm, course.slide.length_m(), |share| course.slide.at(share) * object_from_tool);
-    if along.reached_m() < course.least_m - ROUNDING_M || !push.keeps_from_edge(m, along.share()) {
-        return Err(Refused::Unreachable);
-    }
-    probe.place(pushable.object, &course.slide.at(along.share()));
-    let pushed = probe.check(&at_end(q.base, &along.arms)?, &touching, care);
-    probe.place(pushable.object, pushable.pose);
-    pushed?;
-    let mut is_clear = |q: &Configuration<M::Joints>| probe.check(q, &Contacts::default(), care);
-    let back = follow_in_room(m, q, &place.at_contact, &-place.ahead, place.standoff_m, &mut is_clear)?;
-    let standoff = at_end(q.base, &back.arms)?;
-    let behind = moved(&place.at_contact, &-place.ahead, back.reached_m());
-    let up = follow_in_room(m, &standoff, &behind, &-place.pointing, place.approach_m, &mut is_clear)?;
-    let down = up.arms.iter().rev().copied().chain([standoff.arm]).collect();
-    Ok(Way { base: q.base, down, contact: q.arm, along })
-}
-
-/// What a push may touch.
-fn contacts(object: ObjectId) -> Contacts {
-    Contacts { fingers: Some((object, TouchReason::Push)), support: None }
-}
-
-fn assemble<M: Manipulator>(
-    m: &Tabletop<M>,
-    mut chain: Chain<M>,
-    push: &Pushing<'_>,
-    way: &Way<M::Joints>,
-    rng: &mut dyn Rng,
-) -> Result<Instances<Tabletop<M>>, Infeasible> {
-    let (object, gap_m) = (push.pushable.object, push.pushable.gap_m);
-    approach(m, &mut chain, object, way.base, &way.down, gap_m, Contacts::default(), rng)?;
-
-    let robot = |arm: &M::Joints| Configuration { base: way.base, arm: *arm };
-    let reached = way.along.share();
-    let contact = Waypoint { robot: robot(&way.contact), pushed: 0.0 };
-    let along = way.along.arms.iter().zip(&way.along.shares);
-    let waypoints: Vec<_> = std::iter::once(contact)
-        .chain(along.map(|(arm, share)| Waypoint { robot: robot(arm), pushed: share / reached }))
-        .collect();
-    let mode = chain.end.mode.clone();
-    let carried = Carried::Pushed(object, push.course.slide.at(reached));
-    let motion = ArmMotion::new(m, &chain.end, &waypoints, carried, mode.clone(), mode);
-    let instance = Instance {
-        primitive: primitive::PUSH,
-        motion: Box::new(motion),
-        contacts: contacts(object),
-        moves: ComponentSet::ROBOT.with(ComponentId::Object(object)),
-        object: Some(object),
-        reversible: false,
-    };
-    chain.push(m, instance);
-    chain.finish()
-}
-
-/// Travel to the first of `arms`, then straight on through the others: the hand comes to stand at `object`.
-#[expect(clippy::too_many_arguments, reason = "the approach is one motion with these independent facts")]
-pub(super) fn approach<M: Manipulator>(
-    m: &Tabletop<M>,
-    chain: &mut Chain<M>,
-    object: ObjectId,
-    base: [f64; 3],
-    arms: &[M::Joints],
-    gap_m: f64,
-    contacts: Contacts,
-    rng: &mut dyn Rng,
-) -> Result<(), Infeasible> {
-    let (first, rest) = arms.split_first().ok_or(Infeasible::Unreachable)?;
-    travel(m, chain, &Configuration { base, arm: *first }, gap_m, rng);
-    let mode =
-        chain.end.mode.opened_to(gap_m).and_then(|mode| mode.engaged_with(object)).ok_or(Infeasible::NoContact)?;
-    let waypoints: Vec<_> =
-        rest.iter().map(|arm| Waypoint { robot: Configuration { base, arm: *arm }, pushed: 0.0 }).collect();
-    let mut instance =
-        super::travel::carry(m, chain, &waypoints, &mode, primitive::STRAIGHT_LINE_ARM_TRANSIT, contacts);
-    instance.object = Some(object);
-    chain.push(m, instance);
-    Ok(())
 }

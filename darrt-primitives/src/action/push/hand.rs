@@ -5,13 +5,14 @@ use darrt_core::state::ObjectId;
 use darrt_geom::support::SupportSurface;
 use nalgebra::{Isometry3, Point2, Unit, Vector2, Vector3};
 
-use super::contacts;
 use crate::action::line::{moved, room_for_hand};
+use crate::action::slide::{SlidingHand, contacts};
 use crate::action::stance::Probe;
 use crate::contact::{Fingertips, HandStance, PushHeights, RimContact};
 use crate::length_range::LengthRange;
 use crate::manipulator::Manipulator;
 use crate::mode::{Contacts, SurfaceId};
+use crate::primitive;
 use crate::push::Friction;
 use crate::push::steady::{SlidingDisc, SteadyPush};
 use crate::tabletop::{Movable, Tabletop, TabletopState};
@@ -163,5 +164,20 @@ impl HandPlace {
         let approach_m =
             room_for_hand(m, settings.push.approach_m, &behind, &-pointing, is_clear).map_err(|at| why(&at))?;
         Ok(Self { at_contact, ahead, pointing, standoff_m, approach_m })
+    }
+
+    /// The hand as it goes to work on what it pushes.
+    pub(super) fn hand(&self, pushable: &Pushable<'_>) -> SlidingHand {
+        SlidingHand {
+            primitive: primitive::PUSH,
+            object: pushable.object,
+            on: pushable.on,
+            at_contact: self.at_contact,
+            ahead: self.ahead,
+            down: self.pointing,
+            standoff_m: self.standoff_m,
+            approach_m: self.approach_m,
+            gap_m: pushable.gap_m,
+        }
     }
 }

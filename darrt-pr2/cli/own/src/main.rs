@@ -1,0 +1,3 @@
+fn main() -> std::process::ExitCode {
+    darrt_cli::main_with(&darrt_own::registry())
+}
