@@ -32,6 +32,7 @@ pub mod nearest;
 pub mod observe;
 pub mod partial;
 pub mod path;
+mod pipeline;
 pub mod plan;
 pub mod primitive;
 pub mod problem;

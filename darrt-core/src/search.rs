@@ -12,16 +12,17 @@ use crate::budget::{Interrupt, Stop};
 use crate::distance::Distance;
 use crate::domain::Domain;
 use crate::extend::{ExtendOptions, Extender, Extension};
-use crate::improve::{Improvement, improve};
+use crate::improve::Improvement;
 use crate::observe::accounts::Accounts;
 use crate::partial::PartialState;
+use crate::pipeline::{Pipeline, Unproved};
 use crate::plan::Plan;
 use crate::problem::Problem;
 use crate::random::{Purpose, stream};
 use crate::reroute::Reroute;
 use crate::sample::Sampler;
-use crate::settle::{Unsettled, settle};
-use crate::shorten::{ShortenOptions, mended, retraced};
+use crate::settle::Unsettled;
+use crate::shorten::ShortenOptions;
 use crate::state::State;
 use crate::tree::{Edge, NodeId, Tree};
 use crate::validity::Blame;
@@ -115,12 +116,6 @@ pub struct Step<D: Domain> {
     pub stop: Option<Stop>,
 }
 
-/// Why a state in the goal is no solution.
-enum Unproved<D: Domain> {
-    Refused(Refusal),
-    Unsettled(Unsettled<D>),
-}
-
 impl<'p, D: Domain> Darrt<'p, D> {
     /// `V <- {c_I}`. Random choices are keyed by `(seed, attempt, iteration)`.
     pub fn new(problem: &Problem<D>, strategy: &'p Strategy<D>, seed: u64, attempt: u64, node_limit: usize) -> Self {
@@ -201,7 +196,7 @@ impl<'p, D: Domain> Darrt<'p, D> {
     /// The empty plan, if the start lies in the goal and the verifier agrees.
     pub fn prove_start(&mut self) -> Option<Result<Solution<D>, Refusal>> {
         let is_goal = self.problem.goal().is_satisfied(self.problem.domain(), self.problem.start());
-        let proof = is_goal.then(|| self.judge(Plan::new(self.problem.start().clone(), Vec::new())))?;
+        let proof = is_goal.then(|| self.pipeline().proved(Plan::new(self.problem.start().clone(), Vec::new())))?;
         self.accounts.refused += u64::from(proof.is_err());
         Some(proof)
     }
@@ -259,51 +254,15 @@ impl<'p, D: Domain> Darrt<'p, D> {
         self.prove_plan(&Plan::to_node(&self.tree, node).ok_or_else(|| Unproved::Refused(lost()))?)
     }
 
-    /// Has a plan verified, made shorter and better if it can be, its motions judged if that was put off.
+    /// Makes a solution of a found plan; see [`Pipeline`].
     fn prove_plan(&self, plan: &Plan<D>) -> Result<Solution<D>, Unproved<D>> {
-        let rng = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Shorten);
-        let (extender, options) = (self.extender(), self.strategy.shorten);
-        let short = retraced(&extender, plan, options, rng);
-        let found: Vec<_> = short.iter().chain([plan]).collect();
-        if let Some(better) = self.improved(&found) {
-            return Ok(better);
-        }
-        let short = if extender.options.defer {
-            // What is mended is free, and can be improved although what was found could not.
-            let mended = mended(&extender, plan, short.as_ref(), options, rng);
-            if let Some(better) = mended.as_ref().and_then(|mended| self.improved(&[mended])) {
-                return Ok(better);
-            }
-            mended
-        } else {
-            short
-        };
-        // A shorter plan that the verifier refuses is no reason to give up the longer one.
-        if let Some(solution) = short.and_then(|short| self.judge(short).ok()) {
-            return Ok(solution);
-        }
-        let steps = settle(&extender, plan.start(), plan.steps().iter().cloned(), rng);
-        let steps = steps.map_err(Unproved::Unsettled)?;
-        self.judge(Plan::new(plan.start().clone(), steps)).map_err(Unproved::Refused)
+        self.pipeline().run(plan)
     }
 
-    /// A plan better than those found that the verifier accepts, if that is wanted and there is time. Parts of a plan are not
-    /// improved: what comes behind them is not known.
-    fn improved(&self, found: &[&Plan<D>]) -> Option<Solution<D>> {
-        let improvement =
-            self.strategy.improve.as_ref().filter(|_| !self.is_part && self.interrupt.stop().is_none())?;
-        let rng = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Improve);
-        let better = improve(&self.extender(), improvement, found, self.iteration, rng)?;
-        let first = (*found.first()?).clone();
-        self.judge(better).ok().map(|solution| solution.improved_from(first))
-    }
-
-    fn judge(&self, plan: Plan<D>) -> Result<Solution<D>, Refusal> {
-        if self.interrupt.stop() == Some(Stop::Cancelled) {
-            return Err(Refusal { step: None, at: 0.0, reason: "cancelled".to_owned() });
-        }
-        let p = &self.problem;
-        Solution::prove(p.domain(), p.start(), p.goal(), p.verifier(), plan)
+    fn pipeline(&self) -> Pipeline<'_, D> {
+        let key = (self.seed, self.attempt, self.iteration);
+        let Self { strategy, interrupt, is_part, .. } = *self;
+        Pipeline { extender: self.extender(), strategy, interrupt, is_part, key }
     }
 
     fn note_distance_to_goal(&mut self, state: &State<D>) {

@@ -18,6 +18,8 @@ use crate::self_collision;
 const HOME: ArmPosture = ArmPosture::Side;
 /// Height of the torso where a problem says nothing, metres.
 const TORSO_M: f64 = 0.2;
+/// How low and how high it goes (joint limits of the description).
+const TORSO_RANGE_M: [f64; 2] = [0.0, 0.33];
 
 impl From<ModelError> for RobotError {
     fn from(error: ModelError) -> Self {
@@ -54,7 +56,7 @@ impl TaskRobot for Pr2 {
         };
         let side = side_of(settings);
         let [arm, other] = starts(settings)?;
-        let mut rest = WholeBody { base: settings.base, torso_m: torso_m(settings), ..WholeBody::at_rest() };
+        let mut rest = WholeBody { base: settings.base, torso_m: torso_m(settings)?, ..WholeBody::at_rest() };
         for (at, value) in [(side, arm), (side.other(), other)] {
             if let Some(slot) = rest.arms.get_mut(at.index()) {
                 *slot = value;
@@ -72,7 +74,7 @@ impl TaskRobot for Pr2 {
         let prefix = side.prefix();
         let [arm, other] = starts(settings)?;
         let joints = |side: Side| JOINT_NAMES.map(|name| format!("{}_{name}_joint", side.prefix()));
-        let mut start: JointValues = vec![("torso_lift_joint".to_owned(), torso_m(settings))];
+        let mut start: JointValues = vec![("torso_lift_joint".to_owned(), torso_m(settings)?)];
         for (side, values) in [(side, arm), (side.other(), other)] {
             start.extend(joints(side).into_iter().zip(values));
         }
@@ -119,8 +121,13 @@ fn side_of(settings: &RobotSettings) -> Side {
     }
 }
 
-fn torso_m(settings: &RobotSettings) -> f64 {
-    settings.torso_m.unwrap_or(TORSO_M)
+fn torso_m(settings: &RobotSettings) -> Result<f64, RobotError> {
+    let value = settings.torso_m.unwrap_or(TORSO_M);
+    let [low, high] = TORSO_RANGE_M;
+    if (low..=high).contains(&value) {
+        return Ok(value);
+    }
+    Err(RobotError::Key { key: "robot.torso_m", why: format!("is {value}, must be in [{low}, {high}]") })
 }
 
 fn folders(settings: &RobotSettings) -> Vec<PathBuf> {

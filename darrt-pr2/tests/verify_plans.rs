@@ -57,3 +57,34 @@ fn a_finer_replay_looks_at_more_states() {
 fn grasps_from_above_are_proven() {
     assert_eq!(proven(&plans::lift(&plans::OVERHEAD)).steps, 4);
 }
+
+/// The quick verdict is the plain one, over right plans and over those of other kinds of fault.
+#[test]
+fn the_quick_verdict_is_the_plain_one() {
+    let breaks: [fn(&mut PlanFile); 5] = [
+        |_| {},
+        // Into the table, and away from where the step before ended.
+        |plan| plan.steps[0].waypoints.iter_mut().for_each(|at| at.base[0] += 0.4),
+        |plan| plan.steps[1].waypoints.iter_mut().for_each(|at| at.base[0] += 1e-3),
+        |plan| {
+            let last = plan.steps.len() - 1;
+            plan.steps[last].waypoints.iter_mut().for_each(|at| at.base[2] += 0.3);
+        },
+        |plan| plan.problem.safety.least_margin_m = 0.019,
+    ];
+    let plain = VerifyOptions { is_plain: true, travel_m: 0.02, ..VerifyOptions::default() };
+    let quick = VerifyOptions { is_plain: false, ..plain.clone() };
+    for make in [plans::push, plans::carry] {
+        for change in breaks {
+            let mut plan = make();
+            change(&mut plan);
+            let verdict = |options| verify_for::<Pr2>(&plan, options).map_err(|refusal| (refusal.step, refusal.kind));
+            let (plain, quick) = (verdict(&plain), verdict(&quick));
+            assert_eq!(plain.as_ref().err(), quick.as_ref().err());
+            let clearance = |proof: darrt_task::verify::Proof| proof.smallest_clearance.map(|found| found.distance_m);
+            let (plain, quick) = (plain.ok().and_then(clearance), quick.ok().and_then(clearance));
+            // The quick one knows the smallest clearance to within a half.
+            assert!(plain.zip(quick).is_none_or(|(a, b)| a <= b + 1e-6 && b <= 2.0 * a + 1e-6), "{plain:?} {quick:?}");
+        }
+    }
+}

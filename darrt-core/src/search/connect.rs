@@ -11,13 +11,14 @@
 
 use std::sync::Arc;
 
-use super::{Darrt, Grown, Planner, Start, Step, Strategy, Unproved};
+use super::{Darrt, Grown, Planner, Start, Step, Strategy};
 use crate::domain::Domain;
 use crate::extend::Extension;
 use crate::motion::Reversed;
 use crate::observe::accounts::Accounts;
 use crate::partial::PartialState;
 use crate::path::path;
+use crate::pipeline::Unproved;
 use crate::plan::{Plan, Step as PlanStep};
 use crate::problem::Problem;
 use crate::random::{Purpose, stream};

@@ -15,11 +15,12 @@ use std::sync::Arc;
 use rand::Rng;
 
 use super::connect::Connect;
-use super::{Darrt, Planner, Start, Step, Strategy, Unproved};
+use super::{Darrt, Planner, Start, Step, Strategy};
 use crate::domain::Domain;
 use crate::goal::{Goal, Reach};
 use crate::observe::accounts::Accounts;
 use crate::partial::PartialState;
+use crate::pipeline::Unproved;
 use crate::plan::{Plan, Step as PlanStep};
 use crate::problem::Problem;
 use crate::random::{Purpose, stream};

@@ -162,6 +162,9 @@ pub struct CheckOptions {
     /// Accept no plan with warnings
     #[arg(long)]
     pub strict: bool,
+    /// Look at every state and every pair of bodies exactly, without shortcuts: slow, for the same verdict
+    #[arg(long)]
+    pub plain: bool,
     /// Print what was found as one JSON object
     #[arg(long, conflicts_with_all = ["steps", "quiet"])]
     pub json: bool,

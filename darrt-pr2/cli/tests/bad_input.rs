@@ -68,7 +68,7 @@ fn unknown_keys_and_names_give_the_nearest() {
     all_refused(&[
         ("mass_kg", "masss_kg", &["at `object[0].masss_kg`", "did you mean `mass_kg`?"]),
         ("[bounds]", "[bound]", &["at `bound`", "did you mean `bounds`?"]),
-        ("  \"Place\"", "  \"Plaice\"", &["at `primitives[6]`", "Plaice", "did you mean `Place`?"]),
+        ("  \"Place\"", "  \"Plaice\"", &["`primitives[6]`", "Plaice", "did you mean `Place`?"]),
         (POSTURE, "\nposture = \"sides\"", &["`robot.posture`", "`sides`", "did you mean `side`?"]),
         ("\non = \"central table\"", "\non = \"centre table\"", &["`object[0].on`", "did you mean `central table`?"]),
         (GOAL, "on = \"side tabel\"\nat = [0, 0]", &["`goal.object[0].on`", "did you mean `side table`?"]),
@@ -180,7 +180,7 @@ fn goals_are_possible() {
             "grasps = []",
             &["the goal of `plate` cannot be reached", "`goal.object[0]`", "no `grasps` for Pick"],
         ),
-        ("  \"Straight-Line-Arm-Transit\",\n", "", &["`Push` is allowed but not `Straight-Line-Arm-Transit`"]),
+        ("  \"Straight-Line-Arm-Transit\",\n", "", &["`Pick` is allowed but not `Straight-Line-Arm-Transit`"]),
     ]);
 }
 

@@ -140,7 +140,7 @@ fn what_cannot_be_drawn_is_named() {
     let zero = complaint(&|start| start["objects"]["plate"]["quaternion"] = serde_json::json!([0.0, 0.0, 0.0, 0.0]));
     assert!(zero.contains("plate (norm of the quaternion"), "{zero}");
     let gone = complaint(&|start| drop(start["joints"].as_object_mut().unwrap().remove("r_elbow_flex_joint")));
-    assert!(gone.contains("`start` lacks the joint `r_elbow_flex_joint`"), "{gone}");
+    assert!(gone.contains("`start`: the joint `r_elbow_flex_joint` is missing"), "{gone}");
     assert_eq!(files(folder.path()), ["easy.toml", "p.json"]);
 }
 

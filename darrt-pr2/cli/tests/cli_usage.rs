@@ -148,7 +148,7 @@ fn missing_malformed_large_and_deep_files_are_refused() {
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("deep.json", &"[".repeat(10_000));
     write("deep.toml", &format!("a = {}", "[".repeat(10_000)));
-    write("bad.json", "{\"format\": \"darrt-plan\", \"version\": 1, \"seeed\": 2}");
+    write("bad.json", "{\"format\": \"darrt-plan\", \"version\": 2, \"seeed\": 2}");
     write("bad.toml", "format = \"darrt-problem\"\nversion = 1\nnaem = \"x\"\n");
     std::fs::File::create(folder.path().join("large.json")).unwrap().set_len(300_000_000).unwrap();
     std::fs::File::create(folder.path().join("large.toml")).unwrap().set_len(100_000_000).unwrap();

@@ -96,7 +96,7 @@ pub enum RobotError {
     #[error(transparent)]
     Urdf(#[from] UrdfError),
     /// A start of an arm has the wrong number of joints.
-    #[error("`{key}`: the arm's start has {found} joints, it must have {expected}")]
+    #[error("`{key}` has {found} entries, must have {expected}, one for each joint of the arm")]
     JointCount {
         /// The key.
         key: &'static str,
@@ -118,11 +118,11 @@ pub enum RobotError {
         available: &'static [&'static str],
     },
     /// A key that this robot cannot follow.
-    #[error("`{key}`: {why}")]
+    #[error("`{key}` {why}")]
     Key {
         /// The key.
         key: &'static str,
-        /// Why not.
+        /// Why not: goes on after the key.
         why: String,
     },
     /// What only this kind of robot knows.

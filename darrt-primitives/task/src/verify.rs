@@ -9,7 +9,7 @@
 //! | in which order is what checked? | `judge` |
 //! | what may a step do, what may it touch? | `mode` |
 //! | what lies between two waypoints? | `motion` |
-//! | which solids may not touch, do they? | `stage`, `solid` |
+//! | which solids may not touch, do they? | `stage`, `solid`; looked at plainly: `stage::plain` |
 //! | how far do they keep from each other? | `margins`, `near` |
 //! | what is right and still odd? | `judge::remarks`, `warning` |
 //! | when must a pair be looked at again? | `approach` |

@@ -12,7 +12,7 @@ use darrt_task::plan_file::PlanFile;
 use darrt_task::problem_file::PrimitiveName;
 use darrt_task::program::Program;
 use darrt_task::text::{counted, on_one_line};
-use darrt_task::verify::{self, Proof, Refusal, SmallestClearance, Warning};
+use darrt_task::verify::{self, VerifyOptions, Proof, Refusal, SmallestClearance, Warning};
 
 /// Reads a plan and has it verified.
 ///
@@ -26,7 +26,8 @@ pub(crate) fn run(program: &dyn Program, options: &CheckOptions, output: &mut Ou
     plan.problem.check_files().map_err(|error| Failure::input(format!("{name}: {error}")))?;
     plan.check_complete().map_err(|flaw| refuse(flaw.to_string()))?;
     let robot = program.facts(&plan.problem).map_err(|error| Failure::input(format!("{name}: {error}")))?;
-    let proof = match verify::verify(&plan, &robot) {
+    let how = VerifyOptions { is_plain: options.plain, ..VerifyOptions::default() };
+    let proof = match verify::verify_with(&plan, &robot, &how) {
         Ok(proof) => proof,
         Err(refusal) => {
             if options.json {

@@ -22,7 +22,7 @@ use super::motion::{Segment, State};
 use super::options::VerifyOptions;
 use super::refusal::{Refusal, RefusalKind, Site};
 use super::robot::{Robot, world_from_robot};
-use super::stage::{PairKind, Rule, Stage};
+use super::stage::{Hit, PairKind, Rule, Stage};
 use super::world::World;
 use super::{Proof, near, start};
 use crate::plan_file::{PlanFile, Step, Waypoint};
@@ -195,7 +195,7 @@ impl<'a> Judge<'a> {
         let mut near = self.stage.accept_near();
         near.extend(near::at_goals(&self.plan.problem, &self.world, &state.objects, &mut self.stage));
         self.remarks.note_near(&near, self.plan.problem.safety.least_margin_m);
-        self.stage.check(0, 0.0).map_err(|hit| {
+        self.look(0, 0.0).map_err(|hit| {
             refuse(RefusalKind::Collision, hit.words()).about(&hit.names.0, &hit.names.1).at(&hit.place)
         })?;
         Ok(state)
@@ -405,6 +405,11 @@ impl<'a> Judge<'a> {
 }
 
 impl Judge<'_> {
+    /// Looks at all pairs of solids as they are now.
+    fn look(&mut self, step: u32, time: f64) -> Result<(), Hit> {
+        if self.options.is_plain { self.stage.check_plain(step, time) } else { self.stage.check(step, time) }
+    }
+
     /// What is left standing is far enough from the edge.
     fn check_edge(&self, site: Site<'_>, object: usize, surface: usize, pose: &Isometry3<f64>) -> Result<(), Refusal> {
         let flaw = edge::flaw(&self.plan.problem, &self.world, object, surface, pose, self.options);

@@ -27,6 +27,9 @@ pub struct VerifyOptions {
     pub line_rad: f64,
     /// Slack of joint limits, bounds and start values: what rounding may do, metres or radians.
     pub rounding: f64,
+    /// Look at every state and at every pair of solids exactly, and leave nothing out: some hundred times as much work, for
+    /// the same verdict.
+    pub is_plain: bool,
 }
 
 impl Default for VerifyOptions {
@@ -44,6 +47,7 @@ impl Default for VerifyOptions {
             line_m: 5e-3,
             line_rad: 2.0_f64.to_radians(),
             rounding: 1e-9,
+            is_plain: false,
         }
     }
 }

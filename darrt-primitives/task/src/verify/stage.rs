@@ -1,5 +1,7 @@
 //! All solids at their places, and which pairs may not touch.
 
+mod plain;
+
 use std::collections::BTreeMap;
 
 use darrt_geom::Shape;

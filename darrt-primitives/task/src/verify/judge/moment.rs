@@ -120,7 +120,7 @@ impl<'a> Judge<'a> {
         if let Some([start, end]) = &trial.line {
             self.check_line(site, time, start, end)?;
         }
-        self.stage.check(site.step, time).map_err(|hit| {
+        self.look(site.step, time).map_err(|hit| {
             let (a, b) = &hit.names;
             site.refusal(time, RefusalKind::Collision, hit.words()).about(a, b).at(&hit.place)
         })
@@ -141,6 +141,9 @@ impl<'a> Judge<'a> {
         (travel_m, turn_rad): (f64, f64),
         parts: usize,
     ) -> usize {
+        if self.options.is_plain {
+            return 0;
+        }
         if !trial.skips() {
             return 0;
         }
