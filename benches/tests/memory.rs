@@ -48,7 +48,7 @@ fn a_million_nodes_with_their_motions_fit_into_a_gigabyte() {
     instances.dedup_by(|a, b| Arc::ptr_eq(a, b));
     let mut kinds: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
     for instance in &instances {
-        let kind = kinds.entry(instance.primitive).or_default();
+        let kind = kinds.entry(instance.primitive.name()).or_default();
         *kind = (kind.0 + 1, kind.1 + instance.motion.knots().len());
     }
     println!("instances and their waypoints, by kind: {kinds:?}");

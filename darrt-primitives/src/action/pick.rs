@@ -8,8 +8,8 @@ use rand::{Rng, RngExt};
 
 use super::Chain;
 use super::line::{self, follow_in_room, room_for_hand};
-use super::slide::approach;
 use super::retreat::retreat;
+use super::slide::approach;
 use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::grasp::hold::Hold;

@@ -379,3 +379,6 @@ pub fn strategy<M: TaskRobot>(
         improve: Some(Improvement { cost, options: ImproveOptions::default() }),
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -12,7 +12,7 @@ use darrt_task::plan_file::PlanFile;
 use darrt_task::problem_file::PrimitiveName;
 use darrt_task::program::Program;
 use darrt_task::text::{counted, on_one_line};
-use darrt_task::verify::{self, VerifyOptions, Proof, Refusal, SmallestClearance, Warning};
+use darrt_task::verify::{self, Proof, Refusal, SmallestClearance, VerifyOptions, Warning};
 
 /// Reads a plan and has it verified.
 ///
