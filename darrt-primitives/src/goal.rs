@@ -50,7 +50,7 @@ pub struct ObjectGoal {
     pub object: ObjectId,
     /// Where.
     pub whereabouts: Whereabouts,
-    /// How far its centre may be off in x and y, and in z, metres.
+    /// How far its centre may be off in x and y, and in z, from the point or the rectangle, metres.
     pub tolerance_m: f64,
     /// Wanted yaw and its tolerance, radians; `None`: free.
     pub yaw: Option<(f64, f64)>,
@@ -79,7 +79,8 @@ impl ObjectGoal {
             Whereabouts::At(place) => (pose.translation.vector - place).norm() <= self.tolerance_m,
             Whereabouts::Within { support, part, min, max } => {
                 let at = Point2::new(pose.translation.x, pose.translation.y);
-                let is_between = (min.x..=max.x).contains(&at.x) && (min.y..=max.y).contains(&at.y);
+                let nearest = at.coords.sup(&min.coords).inf(&max.coords);
+                let is_between = (at.coords - nearest).norm() <= self.tolerance_m;
                 resting == Some(*support) && is_between && part.contains(&at)
             }
         };

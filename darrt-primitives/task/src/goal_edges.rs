@@ -7,7 +7,7 @@ use nalgebra::Point2;
 
 use crate::planning_error::PlanningError;
 use crate::problem_file::geometry::Geometry;
-use crate::problem_file::{GoalState, GoalTarget, ProblemFile};
+use crate::problem_file::{GoalState, GoalTarget, ProblemFile, Region};
 use crate::supports::Supports;
 
 /// A region is judged at so many places along each side.
@@ -35,7 +35,10 @@ pub(crate) fn brinks(
         let height_m = support.surface.height() + half_height_m;
         let [min, max] = match goal.target() {
             Some(GoalTarget::On { surface, at }) if is_part(surface) => [at, at],
-            Some(GoalTarget::Within { surface, region }) if is_part(surface) => [region.min, region.max],
+            Some(GoalTarget::Within { surface, region }) if is_part(surface) => {
+                let Some(region) = region.over(&support.surface) else { continue };
+                [region.min, region.max]
+            }
             Some(GoalTarget::At { position: [x, y, z] }) if (z - height_m).abs() <= ON_SURFACE_M => [[x, y]; 2],
             _ => continue,
         };
@@ -74,19 +77,14 @@ pub fn notices(problem: &ProblemFile) -> Result<Vec<String>, PlanningError> {
 
 /// How far inside the edge the best place of a region is, metres; negative where all of it is beside the surface.
 fn deepest_m(surface: &SupportSurface, min: &Point2<f64>, max: &Point2<f64>) -> f64 {
-    let share = |index: u32| f64::from(index) / f64::from(PLACES - 1);
-    let places = (0..PLACES).flat_map(|i| (0..PLACES).map(move |j| [share(i), share(j)]));
-    let depths = places.map(|[u, v]| {
-        let at = Point2::new(min.x + (max.x - min.x) * u, min.y + (max.y - min.y) * v);
-        surface.depth(&at)
-    });
-    depths.fold(f64::NEG_INFINITY, f64::max)
+    let region = Region { min: [min.x, min.y], max: [max.x, max.y] };
+    region.places(PLACES).map(|at| surface.depth(&at)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem_file::{ObjectGoal, Region};
+    use crate::problem_file::ObjectGoal;
     use crate::testing::builtin;
 
     /// The first line about Plate1 with a goal on its side table, whose edges are 0.09 m or more from the built-in goal.

@@ -200,14 +200,20 @@ fn goal(problem: &ProblemFile, geometry: &Geometry, supports: &Supports) -> Resu
         let unknown = || PlanningError::UnknownObject { name: name.to_owned() };
         let index = problem.objects.iter().position(|o| o.name == name).ok_or_else(unknown)?;
         geometry.objects.get(index).ok_or_else(unknown)?;
-        let group = alternatives.iter().filter_map(|goal| one_goal(index, goal, geometry, supports));
+        let spec = problem.objects.get(index).ok_or_else(unknown)?;
+        let group = alternatives.iter().filter_map(|goal| one_goal((index, spec), goal, geometry, supports));
         groups.push(group.collect());
     }
     Ok(TabletopGoal::new(groups))
 }
 
 /// `None` when the goal's keys contradict each other, which the file's validation has refused.
-fn one_goal(object: usize, goal: &file::ObjectGoal, geometry: &Geometry, supports: &Supports) -> Option<ObjectGoal> {
+fn one_goal(
+    (object, spec): (usize, &file::Object),
+    goal: &file::ObjectGoal,
+    geometry: &Geometry,
+    supports: &Supports,
+) -> Option<ObjectGoal> {
     let scene = &geometry.scene;
     let solid = geometry.objects.get(object)?;
     let centre = |pose: Isometry3<f64>| Whereabouts::At(pose.translation.vector);
@@ -215,12 +221,10 @@ fn one_goal(object: usize, goal: &file::ObjectGoal, geometry: &Geometry, support
         GoalTarget::On { .. } | GoalTarget::At { .. } => centre(solid.world_from_goal(goal, scene)?),
         GoalTarget::Within { surface, region } => {
             let index = scene.surfaces().iter().position(|s| s.name() == surface)?;
-            Whereabouts::Within {
-                support: supports.holding(object, index),
-                part: scene.surfaces().get(index)?.clone(),
-                min: Point2::from(region.min),
-                max: Point2::from(region.max),
-            }
+            let part = scene.surfaces().get(index)?.clone();
+            let region = region.over(&part)?;
+            let [min, max] = [region.min, region.max].map(Point2::from);
+            Whereabouts::Within { support: supports.holding(object, index), part, min, max }
         }
     };
     let grip = match goal.state() {
@@ -228,6 +232,8 @@ fn one_goal(object: usize, goal: &file::ObjectGoal, geometry: &Geometry, support
         GoalState::Held => Grip::Held,
         GoalState::Any => Grip::Any,
     };
-    let yaw = goal.yaw.map(|yaw| (yaw, goal.yaw_tolerance));
+    // How a round object is turned is nothing that anybody could see.
+    let is_round = spec.symmetry() == Symmetry::Z;
+    let yaw = goal.yaw.filter(|_| !is_round).map(|yaw| (yaw, goal.yaw_tolerance));
     Some(ObjectGoal { object: ObjectId::new(object), whereabouts, tolerance_m: goal.tolerance_m, yaw, grip })
 }

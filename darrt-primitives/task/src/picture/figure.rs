@@ -122,7 +122,8 @@ fn goal_outlines(story: &Story, view: &View) -> Vec<Vec<Point2<f64>>> {
     let outline = |goal: &crate::problem_file::ObjectGoal| {
         let index = story.problem.objects.iter().position(|object| object.name == goal.object)?;
         if let Some(GoalTarget::Within { surface, region }) = goal.target() {
-            let z = scene.surface(surface)?.height();
+            let plane = scene.surface(surface)?;
+            let (z, region) = (plane.height(), region.over(plane)?);
             let ([x, y], [u, v]) = (region.min, region.max);
             let corners = [[x, y], [u, y], [u, v], [x, v]].map(|[x, y]| Point3::new(x, y, z));
             return Some(view.silhouette(&corners));

@@ -1,5 +1,7 @@
 //! Goals: where the objects shall end.
 
+use darrt_geom::SupportSurface;
+use nalgebra::Point2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -50,9 +52,29 @@ pub struct Region {
     pub max: [f64; 2],
 }
 
+impl Region {
+    /// All of any surface.
+    pub(crate) const WHOLE: Self = Self { min: [f64::NEG_INFINITY; 2], max: [f64::INFINITY; 2] };
+
+    /// The smallest rectangle around the part of it that may lie on a surface; `None` if it lies beside it.
+    pub fn over(&self, surface: &SupportSurface) -> Option<Self> {
+        let (low, high) = surface.bounds();
+        let min = [self.min[0].max(low.x), self.min[1].max(low.y)];
+        let max = [self.max[0].min(high.x), self.max[1].min(high.y)];
+        (min[0] <= max[0] && min[1] <= max[1]).then_some(Self { min, max })
+    }
+
+    /// Points of a finite one, evenly spread, `count` along each side.
+    pub fn places(&self, count: u32) -> impl Iterator<Item = Point2<f64>> + '_ {
+        let share = move |index: u32| f64::from(index) / f64::from(count.max(2) - 1);
+        let at = move |axis: usize, share: f64| self.min[axis] + (self.max[axis] - self.min[axis]) * share;
+        (0..count).flat_map(move |i| (0..count).map(move |j| Point2::new(at(0, share(i)), at(1, share(j)))))
+    }
+}
+
 /// `[[goal.object]]`: where one object shall end.
 ///
-/// Exactly one of: `on` with `at`, `on` with `region`, or `position`.
+/// Exactly one of: `on` with `at`, `on` with `region`, `on` alone, which means anywhere on it, or `position`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectGoal {
@@ -64,7 +86,7 @@ pub struct ObjectGoal {
     /// Where its centre shall be on the surface: world x, y in metres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<[f64; 2]>,
-    /// Where on the surface its centre may be, instead of one point.
+    /// Where on the surface its centre may be, instead of one point; anywhere on it when neither is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<Region>,
     /// Where its centre shall be in the world (m), off every surface.
@@ -94,7 +116,7 @@ pub enum GoalTarget<'a> {
         /// World x, y of the centre.
         at: [f64; 2],
     },
-    /// The centre stands over a rectangle of a surface.
+    /// The centre stands over a rectangle of a surface, which may be larger than the surface.
     Within {
         /// Name of the surface.
         surface: &'a str,
@@ -114,6 +136,7 @@ impl ObjectGoal {
         match (self.on.as_deref(), self.at, &self.region, self.position) {
             (Some(surface), Some(at), None, None) => Some(GoalTarget::On { surface, at }),
             (Some(surface), None, Some(region), None) => Some(GoalTarget::Within { surface, region }),
+            (Some(surface), None, None, None) => Some(GoalTarget::Within { surface, region: &Region::WHOLE }),
             (None, None, None, Some(position)) => Some(GoalTarget::At { position }),
             _ => None,
         }

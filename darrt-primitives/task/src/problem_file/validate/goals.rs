@@ -33,11 +33,12 @@ fn check_goal(problem: &ProblemFile, goal: &ObjectGoal, key: &str) -> Result<(),
         check_allowed(problem, goal, name, key)?;
     }
     let Some(target) = goal.target() else {
-        let text = "must have either `on` with `at`, or `on` with `region`, or `position` alone";
+        let text = "must have either `on`, alone or with one of `at` and `region`, or `position` alone";
         return Err(Flaw::Inconsistent(text.to_owned()).at(key));
     };
     match target {
         GoalTarget::On { .. } => Ok(()),
+        GoalTarget::Within { .. } if goal.region.is_none() => Ok(()),
         GoalTarget::Within { region, .. } => {
             for (axis, letter) in ["x", "y"].into_iter().enumerate() {
                 let range = [region.min[axis], region.max[axis]];

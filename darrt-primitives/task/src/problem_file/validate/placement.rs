@@ -5,7 +5,10 @@ use nalgebra::Point2;
 use super::world::in_bounds;
 use crate::problem_file::error::{Flaw, Located};
 use crate::problem_file::layout::Layout;
-use crate::problem_file::{GoalTarget, Object, ObjectGoal, ProblemFile};
+use crate::problem_file::{GoalTarget, Object, ObjectGoal, ProblemFile, Region};
+
+/// A region is looked at in so many places along each side.
+const PLACES: u32 = 17;
 
 /// Places the world and checks what stands in it.
 pub(super) fn check(problem: &ProblemFile) -> Result<(), Located> {
@@ -36,9 +39,14 @@ fn check_goal(problem: &ProblemFile, layout: &Layout, goal: &ObjectGoal, key: &s
             centre_in_bounds(problem, layout, object, surface, at, key)
         }
         Some(GoalTarget::Within { surface, region }) => {
+            let Some(plane) = layout.surface(surface).map(|plane| &plane.support) else { return Ok(()) };
+            let is_on = |part: &Region| part.places(PLACES).any(|at| plane.contains(&at));
+            if region.over(plane).as_ref().is_some_and(is_on) {
+                return Ok(());
+            }
             let centre = [f64::midpoint(region.min[0], region.max[0]), f64::midpoint(region.min[1], region.max[1])];
-            let key = format!("{key}.region, its middle,");
-            on_surface(layout, surface, &goal.object, centre, &key)
+            // No part of it is on the surface; how far beside it is, its middle tells.
+            on_surface(layout, surface, &goal.object, centre, &format!("{key}.region, its middle,"))
         }
         Some(GoalTarget::At { .. }) | None => Ok(()),
     }
