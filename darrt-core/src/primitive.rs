@@ -129,9 +129,10 @@ pub enum Infeasible {
 /// use darrt_core::prelude::*;
 /// use darrt_core::motion::Straight;
 ///
+/// const TRANSIT: PrimitiveId = PrimitiveId::new(0, "Transit");
 /// struct Transit;
 /// impl<D: Domain> Primitive<D> for Transit {
-///     fn id(&self) -> PrimitiveId { PrimitiveId::new(0, "Transit") }
+///     fn id(&self) -> PrimitiveId { TRANSIT }
 ///     fn useful(&self, m: &D, from: &State<D>, to: &PartialState<D>) -> bool {
 ///         to.are_objects_met(m, from) && !to.is_robot_met(m, from)
 ///     }
@@ -141,7 +142,7 @@ pub enum Infeasible {
 ///         let target = to.robot_overlay(m, &from.robot);
 ///         let length = m.robot().distance(&from.robot, &target);
 ///         Ok(vec![Instance {
-///             primitive: self.id(),
+///             primitive: TRANSIT,
 ///             motion: Box::new(Straight::new(from.clone(), target, length)),
 ///             contacts: D::Contacts::default(),
 ///             moves: ComponentSet::ROBOT,

@@ -56,7 +56,7 @@ fn no_contract_excuses_what_the_plan_does() {
         K::Gripper
     );
     // It never lets go of what then stands.
-    assert_eq!(lies(plans::carry(), place, |c| c.hand = HandUse::Carries), K::Gripper);
+    assert_eq!(lies(plans::carry(), place, |c| c.hand = HandUse::Carries), K::AllowedContact);
     // An empty hand that carries.
     assert_eq!(lies(plans::carry(), carry, |c| c.hand = HandUse::Empty), K::Mode);
     // A transit of the base that the arm does.

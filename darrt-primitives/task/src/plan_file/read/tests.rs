@@ -73,8 +73,8 @@ fn flaws_are_told_with_place_and_key() {
     assert!(twice.contains("duplicate key `b_joint`"), "{twice}");
     let huge = refused("0.125", "1e999");
     assert!(huge.contains("out of range"), "{huge}");
-    let primitive = refused("\"primitive\": \"Pick\"", "\"primitive\": \"Pik\"");
-    assert!(primitive.contains("did you mean `Pick`?"), "{primitive}");
+    let hand = refused("\"takes\"", "\"take\"");
+    assert!(hand.contains("at `contracts.Pick.hand`") && hand.contains("did you mean `takes`?"), "{hand}");
     let cut = refused("}", "");
     assert!(cut.starts_with("plan.json:"), "{cut}");
 }
@@ -82,11 +82,11 @@ fn flaws_are_told_with_place_and_key() {
 #[test]
 fn other_versions_and_formats_are_refused() {
     assert!(matches!(
-        PlanFile::from_json(&sample().to_json().unwrap().replacen("\"version\": 1", "\"version\": 2", 1), "p"),
-        Err(PlanFileError::Version { found: 2, supported: 1, .. })
+        PlanFile::from_json(&sample().to_json().unwrap().replacen("\"version\": 2", "\"version\": 1", 1), "p"),
+        Err(PlanFileError::Version { found: 1, supported: 2, .. })
     ));
     let later = PlanFile::from_json("{\"format\": \"darrt-plan\", \"version\": 9, \"other\": []}", "p").unwrap_err();
-    assert_eq!(later.to_string(), "p: `version` is 9, this program reads version 1");
+    assert_eq!(later.to_string(), "p: `version` is 9, this program reads version 2");
     assert!(refused("darrt-plan", "darrt-plot").contains("did you mean `darrt-plan`?"));
 }
 
