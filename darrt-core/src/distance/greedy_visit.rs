@@ -29,8 +29,8 @@ impl<D: Domain> Distance<D> for GreedyVisit {
 
 /// Where a tour starts: a state, and its working point if that is already known.
 pub(crate) struct Departure<'a, D: Domain> {
-    pub(super) state: &'a State<D>,
-    pub(super) working_point: Option<[f64; 3]>,
+    pub(crate) state: &'a State<D>,
+    pub(crate) working_point: Option<[f64; 3]>,
 }
 
 /// The node with the shortest tour, its penalty included; the lowest index wins a tie.
