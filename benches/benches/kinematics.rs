@@ -21,7 +21,7 @@ use darrt_pr2::arm::many_rolls::RollSolutions;
 use darrt_pr2::arm::{Arm, ArmConfiguration, Side, Solutions};
 use darrt_pr2::forward::{ArmChain, ArmPoses, Frame, world_from_base};
 use darrt_pr2::model::{Pr2Model, WholeBody};
-use darrt_pr2::reachability::Reachability;
+use darrt_pr2::variants::reachability::Reachability;
 use darrt_primitives::kinematics::lanes::{LANES, Row};
 use darrt_primitives::kinematics::{BatchForward, PoseLanes};
 use darrt_primitives::manipulator::Manipulator as _;

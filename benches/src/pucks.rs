@@ -1,12 +1,13 @@
 //! The puck domain: trees of any size, and runs of the planner at fixed seeds.
 
+use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
 use darrt_core::budget::Budget;
-use darrt_core::distance::{ApproachVisit, Distance, Euclidean, ExactTour, GreedyVisit, Weighted};
+use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
 use darrt_core::domain::Domain;
 use darrt_core::observe::Silent;
 use darrt_core::partial::PartialState;
 use darrt_core::problem::Problem;
-use darrt_core::sample::{Frontier, Full, GoalBiased, Placed, RandomSubset, RobotOrObjects, Sampler};
+use darrt_core::sample::{Full, GoalBiased, Placed, RandomSubset, RobotOrObjects, Sampler};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::solve::{Member, SolveOptions, Until, solve_with};
 use darrt_core::space::{ComponentSpace as _, Place};

@@ -7,17 +7,13 @@ use crate::partial::PartialState;
 use crate::state::State;
 use crate::tree::{NodeId, Tree};
 
-pub mod approach_visit;
 pub mod euclidean;
 pub mod exact_tour;
 pub mod greedy_visit;
-pub mod weighted;
 
-pub use approach_visit::ApproachVisit;
 pub use euclidean::Euclidean;
 pub use exact_tour::ExactTour;
 pub use greedy_visit::GreedyVisit;
-pub use weighted::Weighted;
 
 /// How far, in metres.
 ///

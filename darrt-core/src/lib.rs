@@ -14,7 +14,8 @@
 //! | PATH, `useful`, `propagate` | [`path`](mod@path), [`primitive`] |
 //! | `collision(e_i, M, B)` | [`validity`] |
 //! | V | [`tree`] |
-//! | (beyond the paper) a better plan | [`shorten`], [`improve`] in a [`cost`], [`smooth`] |
+//! | (beyond the paper) from the first plan to a better, proved one | `pipeline`: [`shorten`], [`improve`] in a [`cost`], [`smooth`], [`verify`] |
+//! | (for comparisons) what is no better | [`variants`] |
 //!
 //! A result is a [`verify::Solution`], and only the independent verifier can make one.
 
@@ -50,6 +51,7 @@ pub mod state;
 pub mod testing;
 pub mod tree;
 pub mod validity;
+pub mod variants;
 pub mod verify;
 
 /// What an implementor of a domain or a primitive needs.

@@ -8,14 +8,12 @@ use crate::partial::PartialState;
 use crate::space::{ComponentSpace, GroupSet};
 use crate::state::{ObjectId, RobotConfig, State};
 
-pub mod frontier;
 pub mod full;
 pub mod goal_biased;
 pub mod placed;
 pub mod random_subset;
 pub mod robot_or_objects;
 
-pub use frontier::Frontier;
 pub use full::Full;
 pub use goal_biased::GoalBiased;
 pub use placed::Placed;

@@ -2,7 +2,8 @@
 #![cfg(feature = "testing")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test says no more than that it failed")]
 
-use darrt_core::distance::{ApproachVisit, Distance, Euclidean, ExactTour, GreedyVisit, Weighted};
+use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
+use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
 use darrt_core::domain::Domain;
 use darrt_core::goal::{AnyOf, Goal, Reach, Region};
 use darrt_core::laws::motion::component_travel;
@@ -13,7 +14,7 @@ use darrt_core::laws::{
 };
 use darrt_core::motion::{Straight, Waypoints};
 use darrt_core::partial::PartialState;
-use darrt_core::sample::{Frontier, Full, GoalBiased, Placed, RandomSubset, RobotOrObjects, Sampler};
+use darrt_core::sample::{Full, GoalBiased, Placed, RandomSubset, RobotOrObjects, Sampler};
 use darrt_core::space::Place;
 use darrt_core::state::{ObjectId, State};
 use darrt_core::testing::broken::bench::{Bench, Tag, state};

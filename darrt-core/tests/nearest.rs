@@ -2,10 +2,11 @@
 #![cfg(feature = "testing")]
 #![allow(clippy::unwrap_used, reason = "a test says no more than that it failed")]
 
+use darrt_core::variants::{ApproachVisit, Weighted};
 use darrt_core::primitive::PrimitiveId;
 use std::sync::Arc;
 
-use darrt_core::distance::{ApproachVisit, Distance, Euclidean, ExactTour, GreedyVisit, Weighted};
+use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
 use darrt_core::domain::Domain;
 use darrt_core::laws::check_nearest;
 use darrt_core::motion::{Instance, Straight};

@@ -2,9 +2,10 @@
 #![cfg(feature = "testing")]
 #![allow(clippy::unwrap_used, reason = "a test says no more than that it failed")]
 
+use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
 use darrt_core::budget::{Budget, Stop};
 use darrt_core::cost::{TravelCost, plan_seconds};
-use darrt_core::distance::{ApproachVisit, Distance, Weighted};
+use darrt_core::distance::Distance;
 use darrt_core::domain::Domain;
 use darrt_core::extend::{ExtendOptions, Extender, extend_towards};
 use darrt_core::improve::{ImproveOptions, Improvement};
@@ -15,7 +16,7 @@ use darrt_core::observe::{Observer, Silent};
 use darrt_core::partial::PartialState;
 use darrt_core::problem::Problem;
 use darrt_core::random::{Purpose, stream};
-use darrt_core::sample::{Frontier, GoalBiased, Placed, RobotOrObjects, Sampler};
+use darrt_core::sample::{GoalBiased, Placed, RobotOrObjects, Sampler};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve, solve_with};
 use darrt_core::space::{ComponentSpace, Place};

@@ -1,7 +1,7 @@
 //! Indices of bodies in a collision model, and sets of them.
 
 /// Most bodies a collision model may have.
-pub const MAXIMUM_BODIES: usize = 256;
+pub const MAXIMUM_BODIES: usize = 512;
 const WORDS: usize = MAXIMUM_BODIES / 64;
 
 /// Which body of a collision model: the order of registration, from 0.
@@ -26,7 +26,7 @@ impl std::fmt::Display for BodyIndex {
     }
 }
 
-/// A set of bodies as bits; `Copy`, 32 bytes.
+/// A set of bodies as bits; `Copy`, 64 bytes.
 ///
 /// Indices at or beyond [`MAXIMUM_BODIES`] are never members; no model has them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

@@ -17,7 +17,7 @@
 //! | question | file |
 //! |---|---|
 //! | what is the PR2? | [`model`], [`arm`], [`forward`], [`gripper`], [`postures`], [`self_collision`] |
-//! | from where does the arm reach a pose? | [`reachability`] |
+//! | from where does the arm reach a pose? | [`variants::reachability`] |
 //! | how does it plan, and what do files say of it? | [`robot`], [`mod@task`] |
 //! | the primitives of paper section 5.1 | [`primitives`] |
 //! | which problems are built in? | [`problems`] |
@@ -29,10 +29,10 @@ pub mod model;
 pub mod postures;
 pub mod primitives;
 pub mod problems;
-pub mod reachability;
 pub mod robot;
 pub mod self_collision;
 pub mod task;
+pub mod variants;
 
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
 use darrt_task::plan_file::PlanFile;

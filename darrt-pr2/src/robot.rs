@@ -14,7 +14,7 @@ use crate::forward::{
 };
 use crate::gripper;
 use crate::model::{ArmBody, ModelError, Pr2Model, WholeBody};
-use crate::reachability::Reachability;
+use crate::variants::reachability::Reachability;
 use crate::self_collision::link_pairs;
 
 /// Largest change of any joint between two steps along a straight line of the hand, radians.

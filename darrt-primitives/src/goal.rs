@@ -1,15 +1,18 @@
-//! Goals for table-top problems: where objects shall be, and whether the hand has let go of them.
+//! Goals for table-top problems: where objects shall be, whether the hand has let go of them, and where the robot shall be.
 
 use darrt_core::domain::Domain;
 use darrt_core::goal::Goal;
 use darrt_core::partial::PartialState;
+use darrt_core::space::ComponentSpace;
 use darrt_core::space::so2::turn;
 use darrt_core::state::ObjectId;
 use darrt_geom::support::SupportSurface;
 use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
-use crate::manipulator::Manipulator;
+use crate::arm_space::{ARM, BASE};
+use crate::kinematics::JointLimit;
+use crate::manipulator::{Configuration, JointVector, Manipulator};
 use crate::mode::SurfaceId;
 use crate::object_space::upright;
 use crate::tabletop::{Tabletop, TabletopState};
@@ -107,16 +110,90 @@ impl ObjectGoal {
     }
 }
 
-/// Every group of alternatives must have one that is met.
+/// The goal for the robot: every part that is given.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct TabletopGoal {
-    groups: Vec<Vec<ObjectGoal>>,
+pub struct RobotGoal<J> {
+    /// x, y and yaw of the base.
+    pub base: Option<[f64; 3]>,
+    /// Joints of the arm.
+    pub arm: Option<J>,
+    /// The pose of the tool in the world.
+    pub world_from_tool: Option<Isometry3<f64>>,
+    /// How far base, tool and sliding joints may be off, metres.
+    pub tolerance_m: f64,
+    /// How far yaw, tool and turning joints may be turned off, radians.
+    pub tolerance_rad: f64,
 }
 
-impl TabletopGoal {
+/// How often a stance is drawn that brings the tool to a pose.
+const STANCES: usize = 64;
+
+impl<J: JointVector> RobotGoal<J> {
+    fn is_met<M: Manipulator<Joints = J>>(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> bool {
+        let q = &state.robot;
+        let base = self.base.is_none_or(|[x, y, yaw]| {
+            (q.base[0] - x).hypot(q.base[1] - y) <= self.tolerance_m && turn(q.base[2], yaw).abs() <= self.tolerance_rad
+        });
+        // A sliding joint that is off by as much as a turning one may be is off by less than the hand may be.
+        let off = |a: f64, b: f64, limit: &JointLimit| if limit.is_unlimited() { turn(a, b) } else { a - b }.abs();
+        let limits = m.manipulator().limits();
+        let arm = self.arm.as_ref().is_none_or(|arm| {
+            let mut joints = q.arm.as_ref().iter().zip(arm.as_ref()).zip(limits);
+            joints.all(|((a, b), limit)| off(*a, *b, limit) <= self.tolerance_rad)
+        });
+        let tool = self.world_from_tool.as_ref().is_none_or(|wanted| {
+            let tool = m.manipulator().world_from_tool(q);
+            (tool.translation.vector - wanted.translation.vector).norm() <= self.tolerance_m
+                && tool.rotation.angle_to(&wanted.rotation) <= self.tolerance_rad
+        });
+        base && arm && tool
+    }
+
+    /// `target` with the robot where it meets the goal; `None` if no stance was found.
+    fn added_to<M: Manipulator<Joints = J>>(
+        &self,
+        m: &Tabletop<M>,
+        target: PartialState<Tabletop<M>>,
+        rng: &mut dyn Rng,
+    ) -> Option<PartialState<Tabletop<M>>> {
+        let robot = m.manipulator();
+        if let Some(tool) = &self.world_from_tool {
+            let stance = (0..STANCES).find_map(|_| {
+                let base = self.base.unwrap_or_else(|| robot.base_for(tool, rng));
+                let arm = self.arm.or_else(|| robot.inverse(&base, tool, rng))?;
+                let stance = Configuration { base, arm };
+                m.robot().contains(&stance).then_some(stance)
+            })?;
+            return Some(target.with_robot_groups(stance, BASE.union(ARM)));
+        }
+        let groups = match (self.base, self.arm) {
+            (Some(_), Some(_)) => BASE.union(ARM),
+            (Some(_), None) => BASE,
+            (None, Some(_)) => ARM,
+            (None, None) => return Some(target),
+        };
+        let config = Configuration { base: self.base.unwrap_or_default(), arm: self.arm.unwrap_or_else(J::zeros) };
+        Some(target.with_robot_groups(config, groups))
+    }
+}
+
+/// Every group of alternatives must have one that is met, and the robot be where it shall be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TabletopGoal<J> {
+    groups: Vec<Vec<ObjectGoal>>,
+    robot: Option<RobotGoal<J>>,
+}
+
+impl<J> TabletopGoal<J> {
     /// The conjunction of `groups`, each a list of alternatives.
     pub fn new(groups: Vec<Vec<ObjectGoal>>) -> Self {
-        Self { groups }
+        Self { groups, robot: None }
+    }
+
+    /// The same, and the robot where `robot` says.
+    #[must_use]
+    pub fn with_robot(self, robot: Option<RobotGoal<J>>) -> Self {
+        Self { robot, ..self }
     }
 
     /// Of every group one must be met.
@@ -125,9 +202,10 @@ impl TabletopGoal {
     }
 }
 
-impl<M: Manipulator> Goal<Tabletop<M>> for TabletopGoal {
-    fn is_satisfied(&self, _: &Tabletop<M>, state: &TabletopState<M>) -> bool {
+impl<M: Manipulator> Goal<Tabletop<M>> for TabletopGoal<M::Joints> {
+    fn is_satisfied(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> bool {
         self.groups.iter().all(|alternatives| alternatives.iter().any(|goal| goal.is_met(state)))
+            && self.robot.as_ref().is_none_or(|goal| goal.is_met(m, state))
     }
 
     fn sample(&self, m: &Tabletop<M>, rng: &mut dyn Rng) -> Option<PartialState<Tabletop<M>>> {
@@ -139,6 +217,9 @@ impl<M: Manipulator> Goal<Tabletop<M>> for TabletopGoal {
             let goal = alternatives.get(rng.random_range(0..alternatives.len()))?;
             target = target.with_object(goal.object, goal.sample(m, rng)?);
         }
-        Some(target)
+        match &self.robot {
+            Some(goal) => goal.added_to(m, target, rng),
+            None => Some(target),
+        }
     }
 }

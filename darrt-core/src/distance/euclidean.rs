@@ -36,7 +36,7 @@ fn sum_at_least(ways: &Ways, out: &mut Lanes) {
 }
 
 /// Metres from where an object is to `target`.
-pub(super) fn object_travel<D: Domain>(
+pub(crate) fn object_travel<D: Domain>(
     m: &D,
     from: &State<D>,
     id: crate::state::ObjectId,

@@ -28,9 +28,9 @@ impl<D: Domain> Distance<D> for GreedyVisit {
 }
 
 /// Where a tour starts: a state, and its working point if that is already known.
-pub(super) struct Departure<'a, D: Domain> {
-    pub(super) state: &'a State<D>,
-    pub(super) working_point: Option<[f64; 3]>,
+pub(crate) struct Departure<'a, D: Domain> {
+    pub(crate) state: &'a State<D>,
+    pub(crate) working_point: Option<[f64; 3]>,
 }
 
 /// The node with the shortest tour, its penalty included; the lowest index wins a tie.
@@ -75,7 +75,7 @@ pub(super) fn tour_at_least(ways: &Ways, out: &mut Lanes) {
 type Open = SmallVec<[(ObjectId, f64); 8]>;
 
 /// The named objects that are not at their targets, and the sum of their ways.
-pub(super) fn open_objects<D: Domain>(m: &D, from: &State<D>, to: &PartialState<D>) -> (Open, f64) {
+pub(crate) fn open_objects<D: Domain>(m: &D, from: &State<D>, to: &PartialState<D>) -> (Open, f64) {
     let ways = to.objects().map(|(id, target)| (id, object_travel(m, from, id, target)));
     // A way that is not a number is not met either.
     let is_open = |id: ObjectId, way: f64| {
@@ -86,7 +86,7 @@ pub(super) fn open_objects<D: Domain>(m: &D, from: &State<D>, to: &PartialState<
     (open, sum)
 }
 
-pub(super) fn greedy_tour<D: Domain>(m: &D, from: &Departure<'_, D>, to: &PartialState<D>) -> f64 {
+pub(crate) fn greedy_tour<D: Domain>(m: &D, from: &Departure<'_, D>, to: &PartialState<D>) -> f64 {
     let (mut open, mut total) = open_objects(m, from.state, to);
     let mut last: Option<ObjectId> = None;
     while let Some((slot, hop)) = nearest_open(m, from, to, &open, last) {

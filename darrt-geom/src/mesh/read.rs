@@ -27,16 +27,28 @@ pub(super) fn soup(path: &Path) -> Result<Soup, GeomError> {
     parse(&shown, &read_bytes(path, MAXIMUM_FILE_BYTES)?)
 }
 
-/// STL, ascii or binary.
+/// STL, text or binary; all solids of a file together.
 ///
 /// Many exporters begin a binary header with `solid`, so a file whose length is exactly that of a binary file with the
-/// count it tells is binary, whatever its header says.
+/// count it tells is binary, whatever its header says. One of any other length that is no text is refused: triangles that its
+/// count does not tell would be lost.
 pub(super) fn stl(shown: &str, bytes: &[u8]) -> Result<Soup, GeomError> {
     let malformed = |reason: String| GeomError::Malformed { path: shown.to_owned(), format: "STL", reason };
     let told = bytes.get(80..84).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
-    let is_binary = told.is_some_and(|count| bytes.len() as u64 == 84 + 50 * u64::from(count));
+    let length = |count: u32| 84 + 50 * u64::from(count);
+    let is_binary = told.is_some_and(|count| bytes.len() as u64 == length(count));
+    if !is_binary && let Some(text) = text_of(bytes) {
+        return text_stl(shown, text);
+    }
+    let Some(count) = told else {
+        return Err(malformed(format!("{} bytes are neither a text with `solid` nor a binary header", bytes.len())));
+    };
+    if !is_binary {
+        let (has, takes) = (bytes.len(), length(count));
+        return Err(malformed(format!("it tells of {count} triangles, which take {takes} bytes, and has {has}")));
+    }
     let mut owned;
-    let bytes = if is_binary && bytes.starts_with(b"solid") {
+    let bytes = if bytes.starts_with(b"solid") {
         owned = bytes.to_vec();
         owned.iter_mut().take(5).for_each(|b| *b = b' ');
         owned.as_slice()
@@ -49,6 +61,52 @@ pub(super) fn stl(shown: &str, bytes: &[u8]) -> Result<Soup, GeomError> {
     for triangle in reader {
         let triangle = triangle.map_err(|e| malformed(e.to_string()))?;
         push(shown, &mut soup, triangle.vertices.map(|v| Point3::from(v.0.map(f64::from))))?;
+    }
+    Ok(soup)
+}
+
+/// The text of a text STL, without a mark of its encoding; `None` for what is none.
+fn text_of(bytes: &[u8]) -> Option<&str> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let head: Vec<u8> = bytes.iter().copied().skip_while(|b| b.is_ascii_whitespace()).take(5).collect();
+    let text = if head.eq_ignore_ascii_case(b"solid") { std::str::from_utf8(bytes).ok()? } else { return None };
+    (!text.contains('\0')).then_some(text)
+}
+
+/// A text STL line by line: every solid, in any case, named or not, closed by `endsolid` or `end solid`.
+fn text_stl(shown: &str, text: &str) -> Result<Soup, GeomError> {
+    let mut soup = Soup::default();
+    let mut corners: Vec<Point3<f64>> = Vec::new();
+    let mut is_in_solid = false;
+    for (number, line) in (1..).zip(text.lines()) {
+        let malformed = |reason: &str| GeomError::Malformed {
+            path: shown.to_owned(),
+            format: "STL",
+            reason: format!("line {number}: {reason}: `{}`", line.trim().chars().take(40).collect::<String>()),
+        };
+        let line = line.trim().to_ascii_lowercase();
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match words.as_slice() {
+            [] => {}
+            ["solid", ..] if !is_in_solid => is_in_solid = true,
+            ["endsolid", ..] | ["end", "solid", ..] if is_in_solid => is_in_solid = false,
+            _ if !is_in_solid => return Err(malformed("a solid begins with `solid`, and nothing stands between solids")),
+            ["facet", "normal", ..] | ["outer", "loop"] => corners.clear(),
+            ["vertex", x, y, z] => {
+                let number = |word: &&str| word.parse::<f64>().map_err(|_| malformed("a vertex has three numbers"));
+                corners.push(Point3::new(number(x)?, number(y)?, number(z)?));
+            }
+            ["endloop"] => match corners.as_slice() {
+                &[a, b, c] => push(shown, &mut soup, [a, b, c])?,
+                _ => return Err(malformed("a facet has three vertices")),
+            },
+            ["endfacet"] => {}
+            _ => return Err(malformed("this is no line of a solid")),
+        }
+    }
+    if is_in_solid {
+        let reason = "the last solid has no end".to_owned();
+        return Err(GeomError::Malformed { path: shown.to_owned(), format: "STL", reason });
     }
     Ok(soup)
 }

@@ -106,3 +106,55 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn every_solid_of_a_text_stl_is_read_however_it_is_spelt() {
+    let second = ASCII.replace("one", "the second one").replace("vertex 0 0 0", "vertex 0 0 5");
+    for text in [
+        format!("{ASCII}{second}"),
+        format!("\u{feff}{ASCII}\n\n{}", second.to_uppercase()),
+        format!("{}{second}", ASCII.replace("solid one", "solid").replace("endsolid", "end solid")),
+    ] {
+        let soup = stl("two", text.as_bytes()).unwrap();
+        assert_eq!(soup.triangles.len(), 2, "{text}");
+        assert_eq!(soup.vertices[3], Point3::new(0.0, 0.0, 5.0));
+    }
+    for (text, words) in [
+        (format!("{ASCII}rubbish\n"), "line 10"),
+        (ASCII.replace("endsolid one\n", ""), "no end"),
+        (ASCII.replace("vertex 1 0 0\n", ""), "three vertices"),
+        (ASCII.replace("outer loop", "outer lop"), "line 3"),
+    ] {
+        let message = stl("bad.stl", text.as_bytes()).unwrap_err().to_string();
+        assert!(message.contains("bad.stl") && message.contains(words), "{message}");
+    }
+}
+
+#[test]
+fn a_binary_stl_is_as_long_as_it_says() {
+    let mut more = binary(b"two");
+    more.extend_from_within(84..);
+    let message = stl("more.stl", &more).unwrap_err().to_string();
+    assert!(message.contains("1 triangles, which take 134 bytes, and has 184"), "{message}");
+}
+
+proptest! {
+    /// Held to another reader: both read the same triangles of what both can read.
+    #[test]
+    fn text_stl_is_read_as_others_read_it(corners in prop::collection::vec(prop::array::uniform9(-1e3_f32..1e3), 1..20)) {
+        let mut text = "solid made\n".to_owned();
+        for [a, b, c, d, e, f, g, h, i] in &corners {
+            text += &format!("facet normal 0 0 1\nouter loop\nvertex {a} {b} {c}\nvertex {d} {e} {f}\n");
+            text += &format!("vertex {g} {h} {i}\nendloop\nendfacet\n");
+        }
+        text += "endsolid made\n";
+        let ours = stl("made", text.as_bytes()).unwrap();
+        let mut cursor = std::io::Cursor::new(text.as_bytes());
+        let theirs: Vec<_> = stl_io::create_stl_reader(&mut cursor).unwrap().map(Result::unwrap).collect();
+        prop_assert_eq!(ours.triangles.len(), theirs.len());
+        for (corner, theirs) in ours.vertices.iter().zip(theirs.iter().flat_map(|triangle| triangle.vertices)) {
+            let theirs = Point3::from(theirs.0.map(f64::from));
+            prop_assert!((corner - theirs).norm() < 1e-4);
+        }
+    }
+}

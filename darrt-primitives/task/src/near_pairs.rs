@@ -15,7 +15,7 @@ use darrt_primitives::tabletop::{Tabletop, TabletopState};
 pub(crate) fn accept<M: Manipulator>(
     m: &mut Tabletop<M>,
     start: &TabletopState<M>,
-    goal: &TabletopGoal,
+    goal: &TabletopGoal<M::Joints>,
 ) -> Vec<NearPair> {
     let placed = |state: &TabletopState<M>, goal: &ObjectGoal| at_goal(m, state, goal);
     let each = goal.groups().iter().flatten().filter_map(|goal| placed(start, goal));

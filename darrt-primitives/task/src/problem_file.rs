@@ -8,6 +8,7 @@
 //! Units are SI, angles are radians unless the key ends in `_deg`, the world frame has the floor at z = 0 and z
 //! up, quaternions are `[x, y, z, w]`.
 
+mod arrays;
 pub mod collection;
 pub mod error;
 pub mod geometry;
@@ -31,7 +32,7 @@ pub mod validate;
 pub mod world;
 
 pub use error::ProblemFileError;
-pub use goal::{Goal, GoalState, GoalTarget, ObjectGoal, Region};
+pub use goal::{Goal, GoalState, GoalTarget, ObjectGoal, Region, RobotGoal, ToolGoal};
 pub use grasps::{GraspFamily, OverheadGrasp, RimGrasp, SideGrasp};
 pub use length_range::LengthRange;
 pub use name::{CostName, DistanceName, PrimitiveName, SamplerName};
@@ -100,7 +101,7 @@ pub struct ProblemFile {
     /// Movable objects, at least one.
     #[serde(rename = "object")]
     pub objects: Vec<Object>,
-    /// Where the objects shall end.
+    /// Where objects and robot shall end.
     pub goal: Goal,
     /// How far robot and objects keep from what they need not touch.
     #[serde(default)]

@@ -7,8 +7,8 @@ use darrt_core::state::{ObjectId, State};
 use darrt_geom::scene::Scene;
 use darrt_primitives::arm_space::ArmSpace;
 use darrt_primitives::contact::MAX_LEAN;
-use darrt_primitives::goal::{Grip, ObjectGoal, TabletopGoal, Whereabouts};
-use darrt_primitives::manipulator::{Configuration, Hand};
+use darrt_primitives::goal::{Grip, ObjectGoal, RobotGoal, TabletopGoal, Whereabouts};
+use darrt_primitives::manipulator::{Configuration, Hand, JointVector as _};
 use darrt_primitives::mode::Mode;
 use darrt_primitives::object_space::{ObjectSpace, ObjectSpaceParts};
 use darrt_primitives::primitive::{BASE_RIGID_TRANSFER, BASE_TRANSIT};
@@ -44,7 +44,7 @@ pub struct Built<M: TaskRobot> {
     /// The initial state.
     pub start: TabletopState<M>,
     /// G.
-    pub goal: TabletopGoal,
+    pub goal: TabletopGoal<M::Joints>,
     /// The fixed bodies and the surfaces.
     pub scene: Scene,
     /// What the problem itself puts nearer to each other than the least margin.
@@ -90,7 +90,7 @@ pub fn build_with<M: TaskRobot>(
     // A posture that the limits in force forbid is no place to travel through.
     settings.postures.retain(|posture| space.contains_arm(posture));
     let robot = Arc::new(robot);
-    let goal = goal(problem, &geometry, &supports)?;
+    let goal = goal(problem, &geometry, &supports, &*robot)?;
     let rests_on = geometry.objects.iter().enumerate().map(|(index, o)| supports.holding(index, o.surface));
     let mode = Mode::resting(rests_on, TRAVEL_GAP);
     let mut world = Tabletop::new(robot, space, objects, supports.all, geometry.scene.bodies(), settings)?
@@ -194,7 +194,12 @@ fn settings<M: TaskRobot>(
     })
 }
 
-fn goal(problem: &ProblemFile, geometry: &Geometry, supports: &Supports) -> Result<TabletopGoal, PlanningError> {
+fn goal<M: TaskRobot>(
+    problem: &ProblemFile,
+    geometry: &Geometry,
+    supports: &Supports,
+    robot: &M,
+) -> Result<TabletopGoal<M::Joints>, PlanningError> {
     let mut groups = Vec::new();
     for (name, alternatives) in problem.goal.by_object() {
         let unknown = || PlanningError::UnknownObject { name: name.to_owned() };
@@ -204,7 +209,33 @@ fn goal(problem: &ProblemFile, geometry: &Geometry, supports: &Supports) -> Resu
         let group = alternatives.iter().filter_map(|goal| one_goal((index, spec), goal, geometry, supports));
         groups.push(group.collect());
     }
-    Ok(TabletopGoal::new(groups))
+    let robot = problem.goal.robot.as_ref().map(|goal| robot_goal(goal, robot)).transpose()?;
+    Ok(TabletopGoal::new(groups).with_robot(robot))
+}
+
+fn robot_goal<M: TaskRobot>(goal: &file::RobotGoal, robot: &M) -> Result<RobotGoal<M::Joints>, RobotError> {
+    let joints = |values: &Vec<f64>| {
+        let mut arm = M::Joints::zeros();
+        let (found, expected) = (values.len(), M::Joints::COUNT);
+        if found != expected {
+            return Err(RobotError::JointCount { key: "goal.robot.joints", found, expected });
+        }
+        for (i, (value, limit)) in values.iter().zip(robot.limits()).enumerate() {
+            if !limit.contains(*value) {
+                let why = format!("has {value} for joint {i}, outside its limits [{}, {}]", limit.lower, limit.upper);
+                return Err(RobotError::Key { key: "goal.robot.joints", why });
+            }
+        }
+        arm.as_mut().copy_from_slice(values);
+        Ok(arm)
+    };
+    Ok(RobotGoal {
+        base: goal.base,
+        arm: goal.joints.as_ref().map(joints).transpose()?,
+        world_from_tool: goal.tool.map(|tool| tool.world_from_tool()),
+        tolerance_m: goal.tolerance_m,
+        tolerance_rad: goal.tolerance_rad,
+    })
 }
 
 /// `None` when the goal's keys contradict each other, which the file's validation has refused.

@@ -25,7 +25,8 @@ pub(crate) fn run(program: &dyn Program, options: &CheckOptions, output: &mut Ou
     let refuse = |why: String| Failure::new(Exit::Refused, on_one_line(&format!("{name}: refused: {why}")));
     plan.problem.check_files().map_err(|error| Failure::input(format!("{name}: {error}")))?;
     plan.check_complete().map_err(|flaw| refuse(flaw.to_string()))?;
-    let robot = program.facts(&plan.problem).map_err(|error| Failure::input(format!("{name}: {error}")))?;
+    let robot = program.facts(&plan.problem);
+    let robot = robot.map_err(|error| refuse(format!("the robot of the problem cannot be built: {error}")))?;
     let how = VerifyOptions { is_plain: options.plain, ..VerifyOptions::default() };
     let proof = match verify::verify_with(&plan, &robot, &how) {
         Ok(proof) => proof,

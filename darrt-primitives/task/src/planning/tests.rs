@@ -132,3 +132,31 @@ fn a_part_of_a_step_takes_no_longer_than_the_whole() {
         assert!((plan_seconds(&ExecutionTime, m, &plan) - sum_s).abs() < 1e-9);
     }
 }
+
+/// The robot goes where its goal says, by base, joints and tool, and the verifier holds it to that.
+#[test]
+fn the_robot_has_goals_too() {
+    let robot = |text: &str| {
+        let bowl = crate::testing::builtin_text("bowl").unwrap();
+        let (head, _) = bowl.split_once("[[goal.object]]").unwrap();
+        let text = format!("{head}[goal.robot]\n{text}\n");
+        crate::problem_file::ProblemFile::from_toml(&text, "robot").unwrap()
+    };
+    let goals = [
+        "base = [-1.0, 1.0, 0.5]",
+        "joints = [-0.4, 0.0, 0.0, -2.05, 0.0, -0.1, 0.0]",
+        "tool = { position = [0.0, 1.0, 1.2], rpy = [0.0, 0.0, 0.3] }",
+        "base = [-1.0, 1.0, 0.5]\njoints = [-0.4, 0.0, 0.0, -2.05, 0.0, -0.1, 0.0]",
+    ];
+    for goal in goals {
+        let mut plan = planned(&PlanRequest::new(robot(goal), 1)).plan.unwrap();
+        assert!(!plan.steps.is_empty(), "{goal}");
+        verify(&plan).unwrap();
+        let robot = plan.problem.goal.robot.as_mut().unwrap();
+        robot.base = robot.base.map(|[x, y, yaw]| [x + 0.02, y, yaw]);
+        robot.joints.iter_mut().flatten().take(1).for_each(|joint| *joint += 0.06);
+        robot.tool.iter_mut().for_each(|tool| tool.position[2] += 0.02);
+        let refusal = verify(&plan).unwrap_err();
+        assert!(refusal.message.contains("the goal does not hold"), "{refusal}");
+    }
+}

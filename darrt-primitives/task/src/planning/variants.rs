@@ -1,8 +1,8 @@
 //! What a benchmark compares the planner with: changes of its search strategy, as data. Planning itself makes none of them.
 
-use darrt_core::distance::{ApproachVisit, Weighted};
+use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
 use darrt_core::error::Error;
-use darrt_core::sample::{Frontier, Full, Placed, Sampler};
+use darrt_core::sample::{Full, Placed, Sampler};
 use darrt_core::search::Strategy;
 use darrt_core::shorten::ShortenOptions;
 use darrt_core::space::Place;

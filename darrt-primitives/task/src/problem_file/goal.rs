@@ -1,19 +1,63 @@
-//! Goals: where the objects shall end.
+//! Goals: where the objects and the robot shall end.
 
 use darrt_geom::SupportSurface;
-use nalgebra::Point2;
+use nalgebra::{Isometry3, Point2, Translation3, UnitQuaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// `[goal]`: a list of goals for single objects.
+/// `[goal]`: a list of goals for single objects, and one for the robot.
 ///
 /// Goals of different objects must all hold; several goals of one object are alternatives.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Goal {
-    /// At least one goal.
-    #[serde(rename = "object")]
+    /// Where objects shall end; at least one goal, of an object or of the robot.
+    #[serde(default, rename = "object", skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectGoal>,
+    /// Where the robot shall be at the end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot: Option<RobotGoal>,
+}
+
+/// `[goal.robot]`: where the robot shall be at the end. Every key that is given must hold; at least one of `base`, `joints` and
+/// `tool` is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RobotGoal {
+    /// x, y (m) and yaw (rad) of the base.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base: Option<[f64; 3]>,
+    /// Joints of the arm that manipulates, from shoulder to wrist (rad or m).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joints: Option<Vec<f64>>,
+    /// The pose of the tool in the world.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tool: Option<ToolGoal>,
+    /// How far base and tool may be off (m), > 0.
+    #[serde(default = "default_tolerance")]
+    pub tolerance_m: f64,
+    /// How far base, tool and joints may be turned off (rad), > 0.
+    #[serde(default = "default_yaw_tolerance")]
+    pub tolerance_rad: f64,
+}
+
+/// `tool = { position = [x, y, z], rpy = [r, p, y] }`: a pose of the tool in the world, x out of the hand, y the opening axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ToolGoal {
+    /// Its origin (m).
+    pub position: [f64; 3],
+    /// Roll, pitch and yaw (rad), about the fixed axes x, y, z in this order.
+    pub rpy: [f64; 3],
+}
+
+impl ToolGoal {
+    /// The pose.
+    pub fn world_from_tool(&self) -> Isometry3<f64> {
+        let [roll, pitch, yaw] = self.rpy;
+        let [x, y, z] = self.position;
+        Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
+    }
 }
 
 impl Goal {

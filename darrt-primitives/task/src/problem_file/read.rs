@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
-use super::ProblemFile;
-use super::error::ProblemFileError;
+use darrt_primitives::kinematics::limit::wrap_to_pi;
+
+use super::{ProblemFile, VERSION, arrays};
+use super::error::{Flaw, ProblemFileError};
 use super::nesting::check_nesting;
 use super::suggest::{nearest_expected, shown};
 use super::toml_path::path_at;
@@ -70,6 +72,20 @@ fn parse(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileError>
 
 fn parse_toml(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileError> {
     text_file::check(text, source_name, MAX_BYTES, check_nesting)?;
+    let raw = toml::from_str::<toml::Value>(text);
+    // A newer file may have keys that this program cannot know: that it is newer is said first.
+    if let Ok(raw) = &raw
+        && let Some(version) = raw.get("version").and_then(toml::Value::as_integer)
+        && version > i64::from(VERSION)
+    {
+        let bound = format!("{VERSION}: the file is newer than what this program reads");
+        let flaw = Flaw::OutOfRange { value: version as f64, bound };
+        return Err(ProblemFileError::Invalid {
+            file: source_name.to_owned(),
+            key: "version".to_owned(),
+            flaw: Box::new(flaw),
+        });
+    }
     let mut problem: ProblemFile = toml::from_str(text).map_err(|error| {
         let place = error.span().unwrap_or(0..text.len());
         let (line, column) = text_file::line_and_column(text, place.start);
@@ -82,6 +98,13 @@ fn parse_toml(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileE
             message: text_file::one_line(error.message()),
         }
     })?;
+    if let Ok(raw) = raw {
+        arrays::check_lengths(&raw, &problem).map_err(|(key, flaw)| ProblemFileError::Invalid {
+            file: source_name.to_owned(),
+            key: shown(&key),
+            flaw: Box::new(flaw),
+        })?;
+    }
     problem.normalise();
     Ok(problem)
 }
@@ -89,6 +112,17 @@ fn parse_toml(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileE
 impl ProblemFile {
     /// Fills in the defaults that depend on other keys.
     fn normalise(&mut self) {
+        // Yaws are angles: what lies a little beyond half a turn means the other side of it.
+        let yaws = [Some(&mut self.robot.base), self.goal.robot.as_mut().and_then(|goal| goal.base.as_mut())];
+        for [_, _, yaw] in yaws.into_iter().flatten() {
+            *yaw = wrap_to_pi(*yaw);
+        }
+        for corners in self.surfaces.iter_mut().filter_map(|surface| surface.polygon.as_mut()) {
+            // A polygon may be written closed.
+            if corners.len() > 3 && corners.first() == corners.last() {
+                corners.pop();
+            }
+        }
         for object in &mut self.objects {
             object.normalise();
         }

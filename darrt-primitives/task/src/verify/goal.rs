@@ -7,10 +7,21 @@ use super::mode::Mode;
 use super::motion::State;
 use super::refusal::{Refusal, RefusalKind};
 use super::world::{Movable, World};
-use crate::problem_file::{GoalState, GoalTarget, ObjectGoal, ProblemFile, Symmetry};
+use super::robot::{Robot, world_from_robot};
+use crate::problem_file::{GoalState, GoalTarget, ObjectGoal, ProblemFile, RobotGoal, Symmetry};
+use crate::robot::RobotFacts;
 
 /// Checks the goals of every object: one of its alternatives must hold.
-pub(super) fn check(problem: &ProblemFile, world: &World<'_>, end: &State, modes: &[Mode]) -> Result<(), Refusal> {
+pub(super) fn check(
+    problem: &ProblemFile,
+    world: &World<'_>,
+    (robot, facts): (&Robot, &RobotFacts),
+    end: &State,
+    modes: &[Mode],
+) -> Result<(), Refusal> {
+    if let Some(flaw) = problem.goal.robot.as_ref().and_then(|goal| robot_flaw(goal, robot, facts, end)) {
+        return Err(Refusal::whole(RefusalKind::Goal, format!("the goal does not hold: {flaw}")));
+    }
     for (name, alternatives) in problem.goal.by_object() {
         let refuse = |message: String| Refusal::whole(RefusalKind::Goal, format!("the goal does not hold: {message}"));
         let object = world.object(name).ok_or_else(|| refuse(format!("there is no object `{name}`")))?;
@@ -34,6 +45,35 @@ pub(super) fn check(problem: &ProblemFile, world: &World<'_>, end: &State, modes
         }
     }
     Ok(())
+}
+
+/// What the goal of the robot lacks.
+fn robot_flaw(goal: &RobotGoal, robot: &Robot, facts: &RobotFacts, end: &State) -> Option<String> {
+    let (most_m, most_rad) = (goal.tolerance_m, goal.tolerance_rad);
+    let is_off = |metres: f64, radians: f64| metres > most_m || radians > most_rad;
+    if let Some([x, y, yaw]) = goal.base {
+        let (metres, radians) = ((end.base[0] - x).hypot(end.base[1] - y), wrap_to_pi(end.base[2] - yaw).abs());
+        if is_off(metres, radians) {
+            return Some(format!("the base is {metres:.4} m and {radians:.4} rad from its goal"));
+        }
+    }
+    for (name, wanted) in facts.arm_joints.iter().zip(goal.joints.iter().flatten()) {
+        let Some(variable) = robot.tree.variable_index(name) else {
+            return Some(format!("the robot has no joint `{name}`"));
+        };
+        let found = end.joints.get(variable).copied().unwrap_or(f64::NAN);
+        let off = if robot.is_continuous(variable) { wrap_to_pi(found - wanted) } else { found - wanted }.abs();
+        if off.is_nan() || off > most_rad {
+            return Some(format!("`{name}` is {found}, its goal is {wanted} within {most_rad}"));
+        }
+    }
+    let wanted = goal.tool?.world_from_tool();
+    let mut links = Vec::new();
+    robot.link_poses(&end.joints, &mut links);
+    let tool = world_from_robot(&end.base) * links.get(robot.tool)?;
+    let metres = (tool.translation.vector - wanted.translation.vector).norm();
+    let radians = tool.rotation.angle_to(&wanted.rotation);
+    is_off(metres, radians).then(|| format!("the tool is {metres:.4} m and {radians:.4} rad from its goal"))
 }
 
 /// What one goal lacks.

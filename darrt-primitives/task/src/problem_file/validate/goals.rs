@@ -6,7 +6,7 @@ use super::names::{object, surface};
 use super::numbers::{length, ordered, within};
 use super::world::in_bounds;
 use crate::problem_file::error::{Flaw, Located};
-use crate::problem_file::{GoalState, GoalTarget, ObjectGoal, ProblemFile};
+use crate::problem_file::{GoalState, GoalTarget, ObjectGoal, ProblemFile, RobotGoal};
 
 /// Most goals.
 const MOST_GOALS: usize = 1000;
@@ -16,9 +16,29 @@ const TOLERANCE_RANGE: [f64; 2] = [1e-6, 1.0];
 
 /// Checks all goals.
 pub(super) fn check(problem: &ProblemFile) -> Result<(), Located> {
-    length("goal.object", problem.goal.objects.len(), 1, MOST_GOALS)?;
+    let least = usize::from(problem.goal.robot.is_none());
+    length("goal.object", problem.goal.objects.len(), least, MOST_GOALS)?;
+    if let Some(robot) = &problem.goal.robot {
+        check_robot(problem, robot)?;
+    }
     for (index, goal) in problem.goal.objects.iter().enumerate() {
         check_goal(problem, goal, &format!("goal.object[{index}]"))?;
+    }
+    Ok(())
+}
+
+fn check_robot(problem: &ProblemFile, goal: &RobotGoal) -> Result<(), Located> {
+    if goal.base.is_none() && goal.joints.is_none() && goal.tool.is_none() {
+        let text = "must have at least one of `base`, `joints`, `tool`";
+        return Err(Flaw::Inconsistent(text.to_owned()).at("goal.robot"));
+    }
+    let [least, most] = TOLERANCE_RANGE;
+    within("goal.robot.tolerance_m", goal.tolerance_m, least, most)?;
+    within("goal.robot.tolerance_rad", goal.tolerance_rad, least, PI)?;
+    if let Some([x, y, yaw]) = goal.base {
+        in_bounds("goal.robot.base[0]", x, "base_x", problem.bounds.base_x)?;
+        in_bounds("goal.robot.base[1]", y, "base_y", problem.bounds.base_y)?;
+        within("goal.robot.base[2]", yaw, -PI, PI)?;
     }
     Ok(())
 }

@@ -152,8 +152,9 @@ fn ranges_and_shares_are_bounded() {
     refused_more("[push]\nedge_distance_m = [0.1, 0.05]", &["`push.edge_distance_m`", "[0.1, 0.05]"]);
     refused_more("[push]\ngap_m = 0.2", &["`push.gap_m`", "0.2", "[0, 0.09]"]);
     refused_more("[place]\napproach_directions = [[0, 0, 1]]", &["approach_directions[0][2]", "from above"]);
-    refused("base = [-1.0, 0.0, 0.0]", "base = [-1.0, 0.0, 4.0]", &["`robot.base[2]`", "is 4", "[-3.14159"]);
-    refused("version = 1", "version = 2", &["`version`", "is 2", "1"]);
+    refused("version = 1", "version = 2\ncolour = 3", &["`version`", "is 2", "newer than what this program reads"]);
+    refused("size = [0.8, 0.8, 0.7]", "size = [0.8, 0.8, 0.7, 1]", &["`obstacle[0].shape.box.size`", "has 4 entries", "3"]);
+    refused("at = [0.0, 0.0]\n[[goal", "at = [0.0, 0.0, 0.7]\n[[goal", &["`object[0].at`", "has 3 entries", "2"]);
 }
 
 #[test]
@@ -186,7 +187,7 @@ fn things_stand_on_their_surfaces() {
 #[test]
 fn goals_are_clear() {
     let both = "position = [-1.0, 0.0, 0.9]\non = \"table\"\nat = [0, 0]";
-    refused("position = [-1.0, 0.0, 0.9]", both, &["`goal.object[0]`", "either `on` with `at`"]);
+    refused("position = [-1.0, 0.0, 0.9]", both, &["`goal.object[0]`", "either `on`, alone or with one of"]);
     refused_more("state = \"released\"", &["`goal.object[0].state`", "off every surface"]);
     refused_more("tolerance_m = 0", &["`goal.object[0].tolerance_m`", "is 0"]);
     refused_more("yaw_tolerance = 4", &["`goal.object[0].yaw_tolerance`", "is 4"]);

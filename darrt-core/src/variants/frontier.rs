@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use rand::{Rng, RngExt};
 
-use super::Sampler;
+use crate::sample::Sampler;
 use crate::domain::Domain;
 use crate::error::{Error, in_range};
 use crate::goal::Goal;

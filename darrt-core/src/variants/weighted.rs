@@ -1,7 +1,7 @@
 //! Sum and maximum of weighted distances in the subspaces, for comparison with the tours.
 
-use super::Distance;
-use super::euclidean::object_travel;
+use crate::distance::Distance;
+use crate::distance::euclidean::object_travel;
 use crate::domain::Domain;
 use crate::error::{Error, in_range};
 use crate::nearest::bounds::{Lanes, Ways};

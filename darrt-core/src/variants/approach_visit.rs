@@ -1,7 +1,7 @@
 //! The greedy tour that begins with the way to the contact or grasp, as the primitives see it.
 
-use super::Distance;
-use super::greedy_visit::{Departure, greedy_tour, open_objects};
+use crate::distance::Distance;
+use crate::distance::greedy_visit::{Departure, greedy_tour, open_objects};
 use crate::domain::Domain;
 use crate::nearest::pruned::nearest_pruned;
 use crate::partial::PartialState;

@@ -1,0 +1,34 @@
+//! Arrays of a fixed length: the TOML reader drops what is too much of them without a word.
+
+use toml::Value;
+
+use super::ProblemFile;
+use super::error::{Flaw, Located};
+
+/// Every array of the text has as many entries as what was read from it.
+///
+/// # Errors
+/// The first that has not, with its key.
+pub(super) fn check_lengths(text: &Value, read: &ProblemFile) -> Result<(), Located> {
+    // What cannot be written is refused later, with a better reason.
+    let Ok(read) = Value::try_from(read) else { return Ok(()) };
+    walk(text, &read, "")
+}
+
+fn walk(text: &Value, read: &Value, key: &str) -> Result<(), Located> {
+    match (text, read) {
+        (Value::Array(text), Value::Array(read)) => {
+            if text.len() > read.len() {
+                let bound = format!("{}", read.len());
+                return Err(Flaw::WrongLength { found: text.len(), bound }.at(key));
+            }
+            let both = text.iter().zip(read).enumerate();
+            both.into_iter().try_for_each(|(index, (text, read))| walk(text, read, &format!("{key}[{index}]")))
+        }
+        (Value::Table(text), Value::Table(read)) => text.iter().try_for_each(|(name, text)| {
+            let separator = if key.is_empty() { "" } else { "." };
+            read.get(name).map_or(Ok(()), |read| walk(text, read, &format!("{key}{separator}{name}")))
+        }),
+        _ => Ok(()),
+    }
+}
