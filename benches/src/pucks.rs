@@ -1,6 +1,5 @@
 //! The puck domain: trees of any size, and runs of the planner at fixed seeds.
 
-use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
 use darrt_core::budget::Budget;
 use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
 use darrt_core::domain::Domain;
@@ -15,6 +14,7 @@ use darrt_core::state::State;
 use darrt_core::testing::puck::problems::{self, Ready};
 use darrt_core::testing::puck::{Mode, Pick, PuckWorld, Push, Setup, paper_strategy};
 use darrt_core::tree::Tree;
+use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
 
 use crate::stream;
 

@@ -3,12 +3,12 @@
 
 use darrt_benches::room::prepared;
 use darrt_benches::trees;
-use darrt_core::variants::Weighted;
 use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
 use darrt_core::laws::domain::{POINT, REACH_AT_LEAST};
 use darrt_core::laws::space::{SHADOW, SHADOW_ALIKE};
 use darrt_core::laws::{SpaceClaims, check_domain, check_nearest};
 use darrt_core::tree::Tree;
+use darrt_core::variants::Weighted;
 use darrt_pr2::World;
 
 fn tree() -> Tree<World> {

@@ -2,7 +2,6 @@
 #![cfg(feature = "testing")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test says no more than that it failed")]
 
-use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
 use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
 use darrt_core::domain::Domain;
 use darrt_core::goal::{AnyOf, Goal, Reach, Region};
@@ -20,6 +19,7 @@ use darrt_core::state::{ObjectId, State};
 use darrt_core::testing::broken::bench::{Bench, Tag, state};
 use darrt_core::testing::puck::{Mode, Puck, PuckWorld};
 use darrt_core::testing::strategies::{config, looks, parameters, seeds, states, targets};
+use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
 use proptest::prelude::*;
 
 const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_search.txt");

@@ -2,8 +2,8 @@
 #![cfg(feature = "testing")]
 #![allow(clippy::unwrap_used, reason = "a test says no more than that it failed")]
 
-use darrt_core::variants::{ApproachVisit, Weighted};
 use darrt_core::primitive::PrimitiveId;
+use darrt_core::variants::{ApproachVisit, Weighted};
 use std::sync::Arc;
 
 use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};

@@ -2,7 +2,6 @@
 #![cfg(feature = "testing")]
 #![allow(clippy::unwrap_used, reason = "a test says no more than that it failed")]
 
-use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
 use darrt_core::budget::{Budget, Stop};
 use darrt_core::cost::{TravelCost, plan_seconds};
 use darrt_core::distance::Distance;
@@ -27,6 +26,7 @@ use darrt_core::testing::puck::{
 };
 use darrt_core::testing::strategies::{config, states, targets};
 use darrt_core::validity::{Blame, FreePrefix, Validity};
+use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
 use proptest::prelude::*;
 
 fn options(seed: u64, iterations: u64) -> SolveOptions {

@@ -14,8 +14,8 @@ use crate::forward::{
 };
 use crate::gripper;
 use crate::model::{ArmBody, ModelError, Pr2Model, WholeBody};
-use crate::variants::reachability::Reachability;
 use crate::self_collision::link_pairs;
+use crate::variants::reachability::Reachability;
 
 /// Largest change of any joint between two steps along a straight line of the hand, radians.
 const LINE_JOINT_STEP: f64 = 0.3;

@@ -47,7 +47,7 @@ pub(super) fn nearest_departure<D: Domain>(
 
 /// Every tour has the ways of all open objects, and begins with the way to one of them.
 #[inline]
-pub(super) fn tour_at_least(ways: &Ways, out: &mut Lanes) {
+pub(crate) fn tour_at_least(ways: &Ways, out: &mut Lanes) {
     // The way to the nearest object, and the whole tour if none is open.
     let (mut hop, mut alone) = ([f32::INFINITY; LANES], [0.0; LANES]);
     let mut is_open = [false; LANES];

@@ -46,7 +46,7 @@ impl<D: Domain> Distance<D> for ApproachVisit<D> {
             self.measure(m, &Departure { state: &node.state, working_point: Some(node.working_point()) }, to)
         };
         // Never below the greedy tour, so what bounds that one bounds this.
-        nearest_pruned(m, tree, to, super::greedy_visit::tour_at_least, measure)
+        nearest_pruned(m, tree, to, crate::distance::greedy_visit::tour_at_least, measure)
     }
 }
 

@@ -9,11 +9,11 @@ use std::sync::Arc;
 
 use rand::{Rng, RngExt};
 
-use crate::sample::Sampler;
 use crate::domain::Domain;
 use crate::error::{Error, in_range};
 use crate::goal::Goal;
 use crate::partial::PartialState;
+use crate::sample::Sampler;
 use crate::space::ComponentSpace;
 use crate::state::State;
 

@@ -68,7 +68,7 @@ pub(super) fn stl(shown: &str, bytes: &[u8]) -> Result<Soup, GeomError> {
 /// The text of a text STL, without a mark of its encoding; `None` for what is none.
 fn text_of(bytes: &[u8]) -> Option<&str> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let head: Vec<u8> = bytes.iter().copied().skip_while(|b| b.is_ascii_whitespace()).take(5).collect();
+    let head: Vec<u8> = bytes.iter().copied().skip_while(u8::is_ascii_whitespace).take(5).collect();
     let text = if head.eq_ignore_ascii_case(b"solid") { std::str::from_utf8(bytes).ok()? } else { return None };
     (!text.contains('\0')).then_some(text)
 }
@@ -90,7 +90,9 @@ fn text_stl(shown: &str, text: &str) -> Result<Soup, GeomError> {
             [] => {}
             ["solid", ..] if !is_in_solid => is_in_solid = true,
             ["endsolid", ..] | ["end", "solid", ..] if is_in_solid => is_in_solid = false,
-            _ if !is_in_solid => return Err(malformed("a solid begins with `solid`, and nothing stands between solids")),
+            _ if !is_in_solid => {
+                return Err(malformed("a solid begins with `solid`, and nothing stands between solids"));
+            }
             ["facet", "normal", ..] | ["outer", "loop"] => corners.clear(),
             ["vertex", x, y, z] => {
                 let number = |word: &&str| word.parse::<f64>().map_err(|_| malformed("a vertex has three numbers"));

@@ -142,12 +142,11 @@ proptest! {
     /// Held to another reader: both read the same triangles of what both can read.
     #[test]
     fn text_stl_is_read_as_others_read_it(corners in prop::collection::vec(prop::array::uniform9(-1e3_f32..1e3), 1..20)) {
-        let mut text = "solid made\n".to_owned();
-        for [a, b, c, d, e, f, g, h, i] in &corners {
-            text += &format!("facet normal 0 0 1\nouter loop\nvertex {a} {b} {c}\nvertex {d} {e} {f}\n");
-            text += &format!("vertex {g} {h} {i}\nendloop\nendfacet\n");
-        }
-        text += "endsolid made\n";
+        let facets = corners.iter().map(|[a, b, c, d, e, f, g, h, i]| {
+            let corners = format!("vertex {a} {b} {c}\nvertex {d} {e} {f}\nvertex {g} {h} {i}");
+            format!("facet normal 0 0 1\nouter loop\n{corners}\nendloop\nendfacet\n")
+        });
+        let text = format!("solid made\n{}endsolid made\n", facets.collect::<String>());
         let ours = stl("made", text.as_bytes()).unwrap();
         let mut cursor = std::io::Cursor::new(text.as_bytes());
         let theirs: Vec<_> = stl_io::create_stl_reader(&mut cursor).unwrap().map(Result::unwrap).collect();

@@ -79,13 +79,13 @@ impl Builder {
     }
 
     /// Begins a step at the present state.
-    pub(crate) fn begin(&mut self, primitive: PrimitiveName, object: Option<&str>) -> &mut Self {
+    pub(crate) fn begin(&mut self, primitive: &PrimitiveName, object: Option<&str>) -> &mut Self {
         let holds = self.held.map(|pose| Hold { object: self.object.clone(), tool_from_object: pose.into() });
         let first = self.waypoint();
         self.steps.push(Step {
             primitive: primitive.clone(),
             object: object.map(str::to_owned),
-            pushes: (primitive == PrimitiveName::PUSH).then(|| self.object.clone()),
+            pushes: (*primitive == PrimitiveName::PUSH).then(|| self.object.clone()),
             allowed_contacts: Vec::new(),
             holds,
             waypoints: vec![first],

@@ -49,7 +49,7 @@ fn problem(name: &str, base: [f64; 3], q: ArmConfiguration, plate: [f64; 2], goa
     problem.objects[0].at = plate;
     // They stand where the elbow of these simple motions goes.
     problem.obstacles.retain(|obstacle| !["tin", "mug"].contains(&obstacle.name.as_str()));
-    problem.goal = Goal { objects: vec![goal_on_table(goal)] };
+    problem.goal = Goal { objects: vec![goal_on_table(goal)], robot: None };
     problem
 }
 
@@ -77,10 +77,10 @@ pub(crate) fn push_of(plate: [f64; 2]) -> PlanFile {
     let high = moved(PUSH_BASE, PUSH_CONTACT, back + up);
     let problem = problem("plate1", PUSH_BASE, high, plate, [plate[0], plate[1] - 0.3]);
     let mut b = Builder::new(&problem, high, 0.08);
-    b.begin(PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(PLATE)).line(-up);
-    b.begin(PrimitiveName::PUSH, Some(PLATE)).touching(ContactReason::Push).line(-back);
+    b.begin(&PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(PLATE)).line(-up);
+    b.begin(&PrimitiveName::PUSH, Some(PLATE)).touching(ContactReason::Push).line(-back);
     b.push(Vector3::new(0.0, -0.3, 0.0), -1.44);
-    b.begin(PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(PLATE)).touching(ContactReason::Retreat).line(up);
+    b.begin(&PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(PLATE)).touching(ContactReason::Retreat).line(up);
     b.plan(&problem)
 }
 
@@ -102,20 +102,20 @@ pub(crate) fn carry_of(plate: [f64; 2], aside: impl Fn(&mut ArmConfiguration)) -
     let away = moved(PICK_BASE, PICK_GRASP, out);
     let problem = problem("simple-plate", PICK_BASE, away, plate, plate);
     let mut b = Builder::new(&problem, away, OPEN);
-    b.begin(PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(PLATE)).line(-out);
-    b.begin(PrimitiveName::PICK, Some(PLATE)).attach().touching(ContactReason::Grasp);
+    b.begin(&PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(PLATE)).line(-out);
+    b.begin(&PrimitiveName::PICK, Some(PLATE)).attach().touching(ContactReason::Grasp);
     b.lifting_from(TABLE).hand(CLOSED).line(lift);
     let lifted = b.body.arms[0];
-    b.begin(PrimitiveName::BASE_RIGID_TRANSFER, None).touching(ContactReason::Grasp).drive([-0.66, -1.5, 2.3]);
-    b.begin(PrimitiveName::ARM_RIGID_TRANSFER, Some(PLATE)).touching(ContactReason::Grasp);
+    b.begin(&PrimitiveName::BASE_RIGID_TRANSFER, None).touching(ContactReason::Grasp).drive([-0.66, -1.5, 2.3]);
+    b.begin(&PrimitiveName::ARM_RIGID_TRANSFER, Some(PLATE)).touching(ContactReason::Grasp);
     let mut there = lifted;
     there[0] -= 0.1;
     aside(&mut there);
     b.arm_to(there).arm_to(lifted);
-    b.begin(PrimitiveName::BASE_RIGID_TRANSFER, None).touching(ContactReason::Grasp).drive(PICK_BASE);
-    b.begin(PrimitiveName::PLACE, Some(PLATE)).touching(ContactReason::Grasp);
+    b.begin(&PrimitiveName::BASE_RIGID_TRANSFER, None).touching(ContactReason::Grasp).drive(PICK_BASE);
+    b.begin(&PrimitiveName::PLACE, Some(PLATE)).touching(ContactReason::Grasp);
     b.lifting_from(TABLE).line(-lift).hand(OPEN).detach();
-    b.begin(PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(PLATE)).touching(ContactReason::Retreat).line(out);
+    b.begin(&PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(PLATE)).touching(ContactReason::Retreat).line(out);
     b.plan(&problem)
 }
 
@@ -124,12 +124,12 @@ pub(crate) fn wave() -> PlanFile {
     let mut problem = builtin("simple-plate").unwrap();
     let side = ArmPosture::Side.values(Side::Right);
     let plate = problem.objects[0].at;
-    problem.goal = Goal { objects: vec![goal_on_table(plate)] };
+    problem.goal = Goal { objects: vec![goal_on_table(plate)], robot: None };
     let mut b = Builder::new(&problem, side, 0.08);
     let mut high = side;
     high[0] += 1.2;
-    b.begin(PrimitiveName::BASE_TRANSIT, None).hand(0.03).drive([-1.8, 0.0, 0.0]);
-    b.begin(PrimitiveName::ARM_TRANSIT, None).arm_to(high);
+    b.begin(&PrimitiveName::BASE_TRANSIT, None).hand(0.03).drive([-1.8, 0.0, 0.0]);
+    b.begin(&PrimitiveName::ARM_TRANSIT, None).arm_to(high);
     b.plan(&problem)
 }
 
@@ -159,15 +159,15 @@ pub(crate) fn lift(lift: &Lift) -> PlanFile {
     let (name, on) = (problem.objects[0].name.clone(), problem.objects[0].on.clone());
     (problem.goal.objects[0].object, problem.goal.objects[0].on) = (name.clone(), Some(on));
     let mut b = Builder::new(&problem, away, open);
-    b.begin(PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(&name));
+    b.begin(&PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(&name));
     if lift.straddles {
         b.touching(ContactReason::Grasp);
     }
-    b.line(-out).begin(PrimitiveName::PICK, Some(&name)).attach().touching(ContactReason::Grasp);
+    b.line(-out).begin(&PrimitiveName::PICK, Some(&name)).attach().touching(ContactReason::Grasp);
     b.lifting_from(lift.carrier).hand(closed).line(up);
-    b.begin(PrimitiveName::PLACE, Some(&name)).touching(ContactReason::Grasp).lifting_from(lift.carrier);
+    b.begin(&PrimitiveName::PLACE, Some(&name)).touching(ContactReason::Grasp).lifting_from(lift.carrier);
     b.line(-up).hand(open).detach();
-    b.begin(PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(&name)).touching(ContactReason::Retreat).line(out);
+    b.begin(&PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Some(&name)).touching(ContactReason::Retreat).line(out);
     b.plan(&problem)
 }
 

@@ -34,7 +34,7 @@ fn refused(mut plan: PlanFile, step: u32, kind: RefusalKind, edit: impl FnOnce(&
 
 /// The bodies are these two, or start like these two, in either order.
 fn about(refusal: &Refusal, a: &str, b: &str) {
-    let (x, y) = refusal.bodies.as_ref().expect("two bodies");
+    let (x, y) = refusal.bodies.as_deref().expect("two bodies");
     let fits = |x: &str, y: &str| x.starts_with(a) && y.starts_with(b);
     assert!(fits(x, y) || fits(y, x), "{refusal}");
 }

@@ -30,7 +30,11 @@ const ROUNDING: f64 = 1e-9;
 /// # Errors
 /// [`PlanningError::GoalBlocked`] with the object and what is in the way; [`PlanningError::Geometry`] when that cannot
 /// be said.
-pub fn check_goal<M: Manipulator>(m: &Tabletop<M>, goal: &TabletopGoal<M::Joints>, scene: &Scene) -> Result<(), PlanningError> {
+pub fn check_goal<M: Manipulator>(
+    m: &Tabletop<M>,
+    goal: &TabletopGoal<M::Joints>,
+    scene: &Scene,
+) -> Result<(), PlanningError> {
     let mut blocked = None;
     for i in 0..SAMPLES {
         let Some(target) = goal.sample(m, &mut stream(0, 0, i, Purpose::Attempt)) else { return Ok(()) };

@@ -152,8 +152,8 @@ mod tests {
         checked(&problem).err().map(|error| error.to_string())
     }
 
-    fn without(problem: &mut ProblemFile, name: PrimitiveName) {
-        problem.primitives.retain(|other| *other != name);
+    fn without(problem: &mut ProblemFile, name: &PrimitiveName) {
+        problem.primitives.retain(|other| other != name);
     }
 
     #[test]
@@ -166,15 +166,15 @@ mod tests {
     #[test]
     fn goals_on_another_surface_need_pick_place_and_grasps() {
         assert_eq!(
-            said(|p| without(p, PrimitiveName::PICK)).unwrap(),
+            said(|p| without(p, &PrimitiveName::PICK)).unwrap(),
             "the goal of `plate` cannot be reached: `goal.object[0]` wants it on `side table`, it starts on `central \
              table`, and `Pick` is not among the primitives"
         );
-        assert!(said(|p| without(p, PrimitiveName::PLACE)).unwrap().contains("`Place` is not among the primitives"));
+        assert!(said(|p| without(p, &PrimitiveName::PLACE)).unwrap().contains("`Place` is not among the primitives"));
         assert!(said(|p| p.objects[0].grasps.clear()).unwrap().contains("it has no `grasps` for Pick"));
         // In the hand over the other table is good enough.
         let any = |p: &mut ProblemFile| {
-            without(p, PrimitiveName::PLACE);
+            without(p, &PrimitiveName::PLACE);
             p.goal.objects[0].state = Some(GoalState::Any);
         };
         assert_eq!(said(any), None);
@@ -240,7 +240,7 @@ mod tests {
         );
         let there_already = said(|p| {
             here(p);
-            without(p, PrimitiveName::PUSH);
+            without(p, &PrimitiveName::PUSH);
             p.goal.objects[0].at = Some(p.objects[0].at);
         });
         assert_eq!(there_already, None);
@@ -277,12 +277,12 @@ mod tests {
             let mut held = p.goal.objects[0].clone();
             (held.on, held.at, held.position, held.state) = (None, None, Some([-1.0, 0.0, 0.9]), None);
             p.goal.objects.push(held);
-            without(p, PrimitiveName::PLACE);
+            without(p, &PrimitiveName::PLACE);
         };
         assert_eq!(said(both), None);
         let neither = said(|p| {
             both(p);
-            without(p, PrimitiveName::PICK);
+            without(p, &PrimitiveName::PICK);
         });
         let neither = neither.unwrap();
         assert!(neither.contains("`goal.object[0]`") && neither.contains("`goal.object[1]` wants it in the hand"));

@@ -9,13 +9,7 @@ use darrt_primitives::tabletop::{Tabletop, TabletopState};
 pub struct Gentle;
 
 impl<M: Manipulator> ExecutionCost<Tabletop<M>> for Gentle {
-    fn seconds(
-        &self,
-        m: &Tabletop<M>,
-        instance: &Instance<Tabletop<M>>,
-        from: &TabletopState<M>,
-        until: f64,
-    ) -> f64 {
+    fn seconds(&self, m: &Tabletop<M>, instance: &Instance<Tabletop<M>>, from: &TabletopState<M>, until: f64) -> f64 {
         let seconds = ExecutionTime.seconds(m, instance, from, until);
         if instance.object.is_some() { 2.0 * seconds } else { seconds }
     }

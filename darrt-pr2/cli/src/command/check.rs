@@ -84,7 +84,7 @@ fn json(proof: &Proof, is_accepted: bool) -> Result<String, Failure> {
 fn refused(refusal: &Refusal) -> Result<String, Failure> {
     let Refusal { step, primitive, time, kind, bodies, place, message } = refusal;
     let primitive = primitive.as_ref().map(PrimitiveName::as_str);
-    let bodies = bodies.as_ref().map(|(a, b)| [a, b]);
+    let bodies = bodies.as_deref().map(|(a, b)| [a, b]);
     written(&serde_json::json!({ "accepted": false, "refusal": { "kind": format!("{kind:?}"), "step": step,
         "primitive": primitive, "time": time, "bodies": bodies, "place": place, "message": message } }))
 }

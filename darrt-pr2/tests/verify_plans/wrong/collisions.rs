@@ -45,7 +45,7 @@ fn the_robot_does_not_meet_itself() {
     };
     let refusal = refused(plans::wave(), 2, RefusalKind::Collision, |plan| fold(waypoint(plan, 2, 1)));
     about(&refusal, "r_", "");
-    let (a, b) = refusal.bodies.clone().unwrap();
+    let (a, b) = *refusal.bodies.clone().unwrap();
     assert!(a.ends_with("_link") && b.ends_with("_link"), "{refusal}");
 }
 

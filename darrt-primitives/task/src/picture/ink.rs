@@ -32,16 +32,19 @@ impl<'a> Ink<'a> {
     }
 
     /// The same with this opacity of the inside.
+    #[must_use]
     pub fn opacity(self, opacity: f64) -> Self {
         Self { opacity, ..self }
     }
 
     /// The same with a line.
+    #[must_use]
     pub fn line(self, line: &'a str, width: f64) -> Self {
         Self { line, width, ..self }
     }
 
     /// The same with a dashed line.
+    #[must_use]
     pub fn dash(self, dash: &'a str) -> Self {
         Self { dash, ..self }
     }

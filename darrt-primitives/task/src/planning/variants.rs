@@ -1,11 +1,11 @@
 //! What a benchmark compares the planner with: changes of its search strategy, as data. Planning itself makes none of them.
 
-use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
 use darrt_core::error::Error;
 use darrt_core::sample::{Full, Placed, Sampler};
 use darrt_core::search::Strategy;
 use darrt_core::shorten::ShortenOptions;
 use darrt_core::space::Place;
+use darrt_core::variants::{ApproachVisit, Frontier, Weighted};
 use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::primitive::pick::Pick;
 use darrt_primitives::primitive::push::Push;
@@ -62,8 +62,8 @@ impl StrategyChange {
             }
             Self::OnSupport => resample(strategy, |inner| Ok(Box::new(Placed::new(inner, Place::OnSupport, 0.7)?))),
             Self::Frontier => resample(strategy, |inner| Ok(Box::new(Frontier::new(inner, 0.3, 0.2)?))),
-            Self::RobotWeight(weight) => remeasure(strategy, Weighted::sum(weight, 1.0)),
-            Self::LongestWay => remeasure(strategy, Weighted::maximum(1.0, 1.0)),
+            Self::RobotWeight(weight) => remeasure(strategy, || Weighted::sum(weight, 1.0)),
+            Self::LongestWay => remeasure(strategy, || Weighted::maximum(1.0, 1.0)),
             // One that the problem does not allow makes the way no longer.
             Self::Approach => {
                 strategy.distance = Box::new(ApproachVisit::new(vec![Box::new(Push), Box::new(Pick)]));
@@ -85,8 +85,8 @@ fn resample<M: Manipulator>(
     }
 }
 
-fn remeasure<M: Manipulator>(strategy: &mut Strategy<Tabletop<M>>, distance: Result<Weighted, Error>) {
-    if let Ok(distance) = distance {
+fn remeasure<M: Manipulator>(strategy: &mut Strategy<Tabletop<M>>, distance: impl FnOnce() -> Result<Weighted, Error>) {
+    if let Ok(distance) = distance() {
         strategy.distance = Box::new(distance);
     }
 }

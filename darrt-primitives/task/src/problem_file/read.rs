@@ -4,11 +4,11 @@ use std::path::Path;
 
 use darrt_primitives::kinematics::limit::wrap_to_pi;
 
-use super::{ProblemFile, VERSION, arrays};
 use super::error::{Flaw, ProblemFileError};
 use super::nesting::check_nesting;
 use super::suggest::{nearest_expected, shown};
 use super::toml_path::path_at;
+use super::{ProblemFile, VERSION, arrays};
 use crate::file_kind::FileKind;
 use crate::text_file;
 pub use crate::text_file::MAX_NESTING;

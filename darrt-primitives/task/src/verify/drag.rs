@@ -12,7 +12,7 @@ use crate::problem_file::Object;
 const GRAVITY_M_S2: f64 = 9.81;
 
 /// Presses the hand hard enough to draw `object` along, and no harder than it can? With a force N from above the fingers hold
-/// mu_fingers N, and the table resists mu_table (m g + N).
+/// `mu_fingers N`, and the table resists `mu_table (m g + N)`.
 ///
 /// # Errors
 /// What is missing, with the numbers.

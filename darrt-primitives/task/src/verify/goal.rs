@@ -6,8 +6,8 @@ use nalgebra::{Isometry3, Vector2, Vector3};
 use super::mode::Mode;
 use super::motion::State;
 use super::refusal::{Refusal, RefusalKind};
-use super::world::{Movable, World};
 use super::robot::{Robot, world_from_robot};
+use super::world::{Movable, World};
 use crate::problem_file::{GoalState, GoalTarget, ObjectGoal, ProblemFile, RobotGoal, Symmetry};
 use crate::robot::RobotFacts;
 

@@ -70,7 +70,7 @@ pub struct Refusal {
     /// What kind of fault it is.
     pub kind: RefusalKind,
     /// The two bodies concerned, where it is about two.
-    pub bodies: Option<(String, String)>,
+    pub bodies: Option<Box<(String, String)>>,
     /// Where in the world, where it is about a place.
     pub place: Option<[f64; 3]>,
     /// What is wrong, with names, values and bounds.
@@ -85,7 +85,7 @@ impl Refusal {
 
     /// The same about two bodies.
     pub(super) fn about(mut self, a: &str, b: &str) -> Self {
-        self.bodies = Some((a.to_owned(), b.to_owned()));
+        self.bodies = Some(Box::new((a.to_owned(), b.to_owned())));
         self
     }
 

@@ -153,7 +153,11 @@ fn ranges_and_shares_are_bounded() {
     refused_more("[push]\ngap_m = 0.2", &["`push.gap_m`", "0.2", "[0, 0.09]"]);
     refused_more("[place]\napproach_directions = [[0, 0, 1]]", &["approach_directions[0][2]", "from above"]);
     refused("version = 1", "version = 2\ncolour = 3", &["`version`", "is 2", "newer than what this program reads"]);
-    refused("size = [0.8, 0.8, 0.7]", "size = [0.8, 0.8, 0.7, 1]", &["`obstacle[0].shape.box.size`", "has 4 entries", "3"]);
+    refused(
+        "size = [0.8, 0.8, 0.7]",
+        "size = [0.8, 0.8, 0.7, 1]",
+        &["`obstacle[0].shape.box.size`", "has 4 entries", "3"],
+    );
     refused("at = [0.0, 0.0]\n[[goal", "at = [0.0, 0.0, 0.7]\n[[goal", &["`object[0].at`", "has 3 entries", "2"]);
 }
 
