@@ -6,7 +6,7 @@
 //! |---|---|
 //! | which commands and options are there? | [`args`], [`choices`], [`safety`] |
 //! | how did it end? | [`exit`] |
-//! | how are texts and files written? | `output` |
+//! | how are texts and files written? | `output`, `drawing` |
 //! | what does each command do? | `plan`, `check`, `problems`, `show`, `schema`, `bench`, `generate` |
 //! | what is seen while it works? | `progress` |
 //! | how are a plan and the planner's counts told? | `steps`, `statistics`, `diagnosis`, `table`, `bench_table` |
@@ -17,6 +17,7 @@ mod bench_table;
 mod check;
 pub mod choices;
 mod diagnosis;
+mod drawing;
 pub mod exit;
 mod generate;
 mod output;

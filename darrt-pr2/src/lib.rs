@@ -10,7 +10,7 @@
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
 //! | how well does it plan? | [`mod@bench`], [`stopwatch`] |
 //! | how are files read, written and described? | [`text_file`], [`schema`] |
-//! | what does a person see? | [`cli`], [`picture`] |
+//! | what does a person see? | [`cli`], [`picture`], [`viewer`] |
 
 pub mod arm;
 pub mod arm_rigid_transfer;
@@ -49,5 +49,6 @@ pub mod straight_line_arm_transit;
 mod supports;
 pub mod text_file;
 pub mod verify;
+pub mod viewer;
 mod words;
 pub mod world;

@@ -1,4 +1,4 @@
-//! A picture of a problem or a plan: one self-contained SVG or HTML file that needs no network.
+//! A picture of a problem or a plan: one self-contained SVG file, also for papers.
 //!
 //! It shows the room from above and from two sides, a close-up of the surface where the object starts, and for a plan
 //! the object's way and the robot at the end of each step, coloured by primitive as in the paper's figures 5 and 6, and
@@ -95,9 +95,9 @@ pub enum PictureError {
 /// The kinds of picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// An SVG image.
+    /// The picture as an SVG image.
     Svg,
-    /// A page with the image inside.
+    /// The [viewer](crate::viewer)'s page, the picture inside.
     Html,
 }
 
@@ -126,25 +126,10 @@ pub enum Extent {
     Overview,
 }
 
-/// The text of the picture file; the same story gives the same bytes. Of a long plan only some steps are drawn, which the
+/// The picture as an SVG file; the same story gives the same bytes. Of a long plan only some steps are drawn, which the
 /// picture says.
-pub fn draw(story: &Story, format: Format, extent: Extent) -> String {
-    let image = page::draw(&story.abridged(), extent);
-    match format {
-        Format::Svg => format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{image}\n"),
-        Format::Html => {
-            let title = if story.problem.title.is_empty() { &story.problem.name } else { &story.problem.title };
-            let title = svg::node::Text::new(ink::clean(title));
-            format!(
-                "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-                 <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}</title>\n\
-                 <style>body {{ margin: 0; background: #ffffff }} \
-                 svg.page {{ display: block; margin: 0 auto; max-width: 100%; height: auto }}</style>\n\
-                 </head>\n<body>\n{}\n</body>\n</html>\n",
-                image.to_string().replacen("<svg ", "<svg class=\"page\" ", 1)
-            )
-        }
-    }
+pub fn draw(story: &Story, extent: Extent) -> String {
+    format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}\n", page::draw(&story.abridged(), extent))
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use crate::generate::GenerateError;
 use crate::picture::PictureError;
 use crate::plan_file::PlanFileError;
 use crate::problem_file::ProblemFileError;
+use crate::viewer::ViewerError;
 use crate::words::on_one_line;
 
 /// The exit codes, for scripts. They are part of the interface and written in `darrt --help`.
@@ -61,6 +62,12 @@ impl From<ProblemFileError> for Failure {
 
 impl From<PictureError> for Failure {
     fn from(error: PictureError) -> Self {
+        Self::input(error.to_string())
+    }
+}
+
+impl From<ViewerError> for Failure {
+    fn from(error: ViewerError) -> Self {
         Self::input(error.to_string())
     }
 }

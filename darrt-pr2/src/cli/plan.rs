@@ -9,8 +9,8 @@ use super::args::PlanOptions;
 use super::exit::{Exit, Failure};
 use super::output::{self, Output};
 use super::progress::Progress;
-use super::{check, diagnosis, safety, statistics, steps};
-use crate::picture::{self, Extent, Format, Story, Travel};
+use super::{check, diagnosis, drawing, safety, statistics, steps};
+use crate::picture::{Extent, Format, Story, Travel};
 use crate::plan_file::PlanFile;
 use crate::planning::{self, PlanRequest, PlanResult};
 use crate::problem_file::ProblemFile;
@@ -173,7 +173,9 @@ impl Files {
     fn write(&self, plan: &PlanFile, story: &Story) -> Result<(), Failure> {
         plan.write(&self.plan)?;
         match &self.picture {
-            Some((path, format)) => output::write_file(path, &picture::draw(story, *format, Extent::Whole)),
+            Some((path, format)) => {
+                output::write_file(path, &drawing::file(story, Some(plan), *format, Extent::Whole)?)
+            }
             None => Ok(()),
         }
     }

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use super::args::ShowOptions;
 use super::exit::{Exit, Failure};
 use super::output::{self, Output};
-use super::steps;
+use super::{drawing, steps};
 use crate::file_kind;
-use crate::picture::{self, Extent, Format, Story};
+use crate::picture::{Extent, Format, Story};
 use crate::plan_file::PlanFile;
 use crate::problem_file::{ProblemFile, builtin};
 
@@ -16,13 +16,13 @@ use crate::problem_file::{ProblemFile, builtin};
 /// # Errors
 /// What cannot be read, built or written.
 pub(super) fn run(options: &ShowOptions, output: &mut Output) -> Result<Exit, Failure> {
-    let story = story(&options.source)?;
+    let (story, plan) = read(&options.source)?;
     let default = || PathBuf::from(format!("{}.html", output::file_stem(&story.problem.name)));
     let path = options.output.clone().unwrap_or_else(default);
     let format = Format::of_path(&path)?;
     let place = output::writable(&path)?;
     let extent = if options.overview { Extent::Overview } else { Extent::Whole };
-    output::write_file(&place, &picture::draw(&story, format, extent))?;
+    output::write_file(&place, &drawing::file(&story, plan.as_ref(), format, extent)?)?;
     if !story.steps.is_empty() {
         output.print(&steps::table(&story))?;
     }
@@ -30,13 +30,14 @@ pub(super) fn run(options: &ShowOptions, output: &mut Output) -> Result<Exit, Fa
     Ok(Exit::Solved)
 }
 
-fn story(source: &str) -> Result<Story, Failure> {
+fn read(source: &str) -> Result<(Story, Option<PlanFile>), Failure> {
     if builtin::canonical_name(source).is_some() || !is_plan(Path::new(source)) {
-        return Ok(Story::of_problem(&ProblemFile::open(source)?)?);
+        return Ok((Story::of_problem(&ProblemFile::open(source)?)?, None));
     }
     let plan = PlanFile::read(source)?;
     plan.problem.validate(source)?;
-    Story::of_plan(&plan).map_err(|error| Failure::input(format!("{source}: {error}")))
+    let story = Story::of_plan(&plan).map_err(|error| Failure::input(format!("{source}: {error}")))?;
+    Ok((story, Some(plan)))
 }
 
 /// Whether a file is a plan rather than a problem: its name ends in `.json`, or it begins as JSON does.

@@ -1,0 +1,36 @@
+//! A problem or a plan as a file to look at.
+
+use super::exit::Failure;
+use crate::picture::{self, Extent, Format, Story};
+use crate::plan_file::{PlanFile, Waypoint};
+use crate::viewer::{self, RobotModel, ViewerError};
+
+/// The bytes of the file: of the plan, if there is one, else of the story's problem.
+///
+/// # Errors
+/// What cannot be built or drawn.
+pub(super) fn file(story: &Story, plan: Option<&PlanFile>, format: Format, extent: Extent) -> Result<Vec<u8>, Failure> {
+    let figure = || picture::draw(story, extent);
+    Ok(match format {
+        Format::Svg => figure().into_bytes(),
+        Format::Html => viewer::page(&data(story, plan)?, &figure())?.into_bytes(),
+    })
+}
+
+fn data(story: &Story, plan: Option<&PlanFile>) -> Result<viewer::data::ViewerData, ViewerError> {
+    let robot = viewer::robot_of(&story.problem)?;
+    match plan {
+        Some(plan) => viewer::of_plan(plan, &story.note, &robot),
+        None => viewer::of_problem(&story.problem, &start(story, &robot), &robot),
+    }
+}
+
+/// Where everything stands in a problem.
+fn start(story: &Story, robot: &RobotModel) -> Waypoint {
+    let objects = story.problem.objects.iter().zip(&story.start.objects);
+    Waypoint {
+        base: story.start.robot.base,
+        joints: robot.table().complete(&story.model.joint_values(&story.start.robot)),
+        objects: objects.map(|(object, pose)| (object.name.as_str().into(), (*pose).into())).collect(),
+    }
+}
