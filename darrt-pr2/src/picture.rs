@@ -13,6 +13,7 @@
 //! | what is the silhouette of a solid? | `outline` |
 //! | how are the room, the robot, the ways drawn? | `room`, `figure`, `journey` |
 //! | what is on the page? | `page`, `overview`, `filmstrip` |
+//! | how does it become a PNG file? | [`raster`] |
 
 mod abridged;
 mod badge;
@@ -25,6 +26,7 @@ mod overview;
 mod page;
 pub(crate) mod palette;
 mod panel;
+pub mod raster;
 mod room;
 pub mod story;
 pub mod travel;
@@ -84,8 +86,14 @@ pub enum PictureError {
         /// Its largest size.
         bound: f64,
     },
+    /// The picture cannot be turned into dots.
+    #[error("the picture cannot be written as PNG: {reason}")]
+    Raster {
+        /// Why.
+        reason: String,
+    },
     /// The ending of the file names no format.
-    #[error("{file}: a picture is an .svg or .html file")]
+    #[error("{file}: a picture is an .html, .svg, .png or .glb file")]
     Format {
         /// The file.
         file: String,
@@ -97,20 +105,26 @@ pub enum PictureError {
 pub enum Format {
     /// The picture as an SVG image.
     Svg,
+    /// The same as a raster image.
+    Png,
     /// The [viewer](crate::viewer)'s page, the picture inside.
     Html,
+    /// The [viewer](crate::viewer)'s scene, moving, for other programs: binary glTF.
+    Glb,
 }
 
 impl Format {
     /// The format that the ending of a file name asks for.
     ///
     /// # Errors
-    /// [`PictureError::Format`] for any ending but `svg`, `html` and `htm` (in any case).
+    /// [`PictureError::Format`] for any ending but `svg`, `png`, `html`, `htm` and `glb` (in any case).
     pub fn of_path(path: &Path) -> Result<Self, PictureError> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         match ending.as_deref() {
             Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
             Some("html" | "htm") => Ok(Self::Html),
+            Some("glb") => Ok(Self::Glb),
             _ => Err(PictureError::Format { file: path.display().to_string() }),
         }
     }

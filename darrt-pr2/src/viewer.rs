@@ -7,11 +7,14 @@
 //! | what moves, and when? | `timeline` |
 //! | how near does what come? | `clearance` |
 //! | how is it drawn? | `viewer.html`, which is also fit for data of others |
+//! | and as a file for other programs? | [`glb`], with the triangles of `solids` |
 
 mod clearance;
 pub mod data;
+pub mod glb;
 mod meshes;
 mod scene;
+mod solids;
 mod timeline;
 
 use std::path::PathBuf;
@@ -64,6 +67,12 @@ pub enum ViewerError {
         what: &'static str,
         /// Its name.
         name: String,
+    },
+    /// A binary glTF file would be larger than its format allows.
+    #[error("a glTF file of {bytes} bytes cannot be written, at most {} are possible", u32::MAX)]
+    TooLarge {
+        /// Its size.
+        bytes: usize,
     },
     /// The data cannot be written.
     #[error("the data of the page cannot be written as JSON: {0}")]

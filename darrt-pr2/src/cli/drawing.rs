@@ -1,7 +1,7 @@
 //! A problem or a plan as a file to look at.
 
 use super::exit::Failure;
-use crate::picture::{self, Extent, Format, Story};
+use crate::picture::{self, Extent, Format, Story, raster};
 use crate::plan_file::{PlanFile, Waypoint};
 use crate::viewer::{self, RobotModel, ViewerError};
 
@@ -13,6 +13,8 @@ pub(super) fn file(story: &Story, plan: Option<&PlanFile>, format: Format, exten
     let figure = || picture::draw(story, extent);
     Ok(match format {
         Format::Svg => figure().into_bytes(),
+        Format::Png => raster::png(&figure())?,
+        Format::Glb => viewer::glb::file(&data(story, plan)?)?,
         Format::Html => viewer::page(&data(story, plan)?, &figure())?.into_bytes(),
     })
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use darrt_geom::clearance::between;
 use darrt_geom::{Body, Clearance};
-use nalgebra::{Isometry3, Point3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::data::{self, ClearanceData, rounded};
 use super::scene::RobotModel;
@@ -22,7 +22,10 @@ const STANDS_M: f64 = 2e-3;
 struct Thing<'a> {
     body: &'a Body,
     world_from_body: Isometry3<f64>,
-    /// A ball around it, world; without end for what has none.
+    /// The box around it in its own frame,
+    middle: Point3<f64>,
+    half: Vector3<f64>,
+    /// and the ball around that, in the world; without end for what has none.
     centre: Point3<f64>,
     radius: f64,
 }
@@ -30,19 +33,26 @@ struct Thing<'a> {
 impl<'a> Thing<'a> {
     fn new(body: &'a Body, world_from_body: Isometry3<f64>) -> Self {
         let (low, high) = body.local_aabb();
-        let radius = (high - low).norm() / 2.0;
-        let centre = if radius.is_finite() { nalgebra::center(&low, &high) } else { Point3::origin() };
-        Self { body, world_from_body, centre: world_from_body * centre, radius }
+        let half = (high - low) / 2.0;
+        let radius = half.norm();
+        let middle = if radius.is_finite() { nalgebra::center(&low, &high) } else { Point3::origin() };
+        Self { body, world_from_body, middle, half, centre: world_from_body * middle, radius }
     }
 
     /// No more than their distance.
     fn bound(&self, other: &Self) -> f64 {
         // The one body without end is the floor.
         match (self.radius.is_finite(), other.radius.is_finite()) {
-            (true, true) => (self.centre - other.centre).norm() - self.radius - other.radius,
+            // A ball around a wall is mostly air, a box is not.
+            (true, true) => self.box_to_ball(other).max(other.box_to_ball(self)),
             (true, false) => self.centre.z - self.radius,
             (false, _) => f64::NEG_INFINITY,
         }
+    }
+
+    fn box_to_ball(&self, other: &Self) -> f64 {
+        let inside = self.world_from_body.inverse_transform_point(&other.centre) - self.middle;
+        (inside.abs() - self.half).sup(&Vector3::zeros()).norm() - other.radius
     }
 }
 

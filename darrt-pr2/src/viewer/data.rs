@@ -3,7 +3,7 @@
 //! Metres, radians, the world's floor at z = 0. A pose is `[x, y, z, qx, qy, qz, qw]`. Numbers are rounded to what the eye
 //! can tell ([`rounded`]), so the object is small; plans are judged by their own file, not by this one.
 
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
 /// The only accepted value of the key `format`.
@@ -328,4 +328,10 @@ pub(super) fn pose(pose: &Isometry3<f64>) -> PoseData {
     let [x, y, z] = [x, y, z].map(rounded);
     let [i, j, k, w] = [q.i, q.j, q.k, q.w].map(|value| to(value, 1e6));
     [x, y, z, i, j, k, w]
+}
+
+/// A pose from data; a quaternion that is none gives no turn.
+pub(super) fn pose_of([x, y, z, i, j, k, w]: &PoseData) -> Isometry3<f64> {
+    let rotation = UnitQuaternion::try_new(Quaternion::new(*w, *i, *j, *k), 1e-9).unwrap_or_default();
+    Isometry3::from_parts(Translation3::new(*x, *y, *z), rotation)
 }
