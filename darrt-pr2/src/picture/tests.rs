@@ -106,8 +106,9 @@ fn the_format_follows_the_ending() {
     let format = |path: &str| Format::of_path(Path::new(path));
     assert_eq!(format("a/b.SVG").unwrap(), Format::Svg);
     assert_eq!(format("b.htm").unwrap(), Format::Html);
-    for bad in ["b", "b.png", "svg"] {
-        assert!(format(bad).unwrap_err().to_string().contains(".svg or .html"), "{bad}");
+    assert_eq!((format("b.png").unwrap(), format("b.GLB").unwrap()), (Format::Png, Format::Glb));
+    for bad in ["b", "b.gif", "svg"] {
+        assert!(format(bad).unwrap_err().to_string().contains(".html, .svg, .png or .glb"), "{bad}");
     }
 }
 

@@ -77,7 +77,8 @@ impl File {
         let mut node = json!({
             "name": name,
             "translation": [pose.translation.x, pose.translation.y, pose.translation.z],
-            "rotation": [q.i, q.j, q.k, q.w],
+            // Rounding may make a number of no turn a little more than one, which the format forbids.
+            "rotation": [q.i, q.j, q.k, q.w].map(|value| value.clamp(-1.0, 1.0)),
         });
         let surface = Surface::of(parts);
         if !surface.corners.is_empty() {
