@@ -36,7 +36,7 @@ pub(super) fn run(options: &PlanOptions, output: &mut Output) -> Result<Exit, Fa
     let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else { return Err(failed(&request, &result)) };
     let story = Story::of_plan(plan)?;
     // First of all: a terminal that has gone away must not cost the plan.
-    files.write(plan, &story)?;
+    plan.write(&files.plan)?;
     if !options.quiet {
         output.print(&summary(&request, &result, cancel.is_cancelled()))?;
         if let Some(words) = improvement(&result, &story)? {
@@ -49,6 +49,10 @@ pub(super) fn run(options: &PlanOptions, output: &mut Output) -> Result<Exit, Fa
             output.print(&safety::notices(&proof.warnings))?;
         }
         check::notices(plan, output)?;
+    }
+    // Last: nobody waits for a picture to read the steps.
+    files.draw(plan, &story)?;
+    if !options.quiet {
         output.print(&files.words())?;
     }
     Ok(Exit::Solved)
@@ -170,8 +174,7 @@ impl Files {
         Ok(Self { plan, picture })
     }
 
-    fn write(&self, plan: &PlanFile, story: &Story) -> Result<(), Failure> {
-        plan.write(&self.plan)?;
+    fn draw(&self, plan: &PlanFile, story: &Story) -> Result<(), Failure> {
         match &self.picture {
             Some((path, format)) => {
                 output::write_file(path, &drawing::file(story, Some(plan), *format, Extent::Whole)?)

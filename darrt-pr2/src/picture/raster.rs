@@ -12,6 +12,9 @@ const SCALE: f32 = 2.0;
 /// Most dots on one side.
 const MOST_DOTS: f32 = 16_384.0;
 
+/// Families without serifs, some of which most machines have.
+const PLAIN: [&str; 6] = ["Helvetica", "Arial", "Liberation Sans", "DejaVu Sans", "Noto Sans", "Segoe UI"];
+
 /// A PNG file of an SVG picture, twice its size; the fonts are those of this machine.
 ///
 /// # Errors
@@ -22,10 +25,7 @@ pub fn png(picture: &str) -> Result<Vec<u8>, PictureError> {
     if fonts.is_empty() {
         return Err(failed("there are no fonts on this machine; install some, or ask for an .svg file".to_owned()));
     }
-    let sans = fonts.faces().find(|face| !face.monospaced).and_then(|face| face.families.first());
-    let family = sans.map(|(name, _)| name.clone()).unwrap_or_default();
-    // Used where none of the families that the picture names is there.
-    let options = Options { fontdb: Arc::clone(&fonts), font_family: family, ..Options::default() };
+    let options = Options { fontdb: Arc::clone(&fonts), ..Options::default() };
     let tree = Tree::from_str(picture, &options).map_err(|error| failed(error.to_string()))?;
     let size = tree.size();
     let scale = SCALE.min(MOST_DOTS / size.width().max(size.height()));
@@ -41,6 +41,12 @@ fn fonts() -> Arc<fontdb::Database> {
     Arc::clone(FONTS.get_or_init(|| {
         let mut fonts = fontdb::Database::new();
         fonts.load_system_fonts();
+        // The picture ends its list of families with any that has no serifs; which one that is here must be said.
+        let names = || fonts.faces().filter(|face| !face.monospaced).filter_map(|face| Some(&face.families.first()?.0));
+        let plain = PLAIN.into_iter().find_map(|plain| names().find(|name| *name == plain));
+        if let Some(name) = plain.or_else(|| names().next()).cloned() {
+            fonts.set_sans_serif_family(name);
+        }
         Arc::new(fonts)
     }))
 }

@@ -74,11 +74,12 @@ impl File {
     /// A node with what it looks like.
     fn solid(&mut self, name: &str, pose: &Isometry3<f64>, parts: &[PartData], colour: [f64; 3]) -> usize {
         let q = pose.rotation.quaternion();
+        // Rounding may make a number a little more than one, which the format forbids.
+        let rotation = [q.i, q.j, q.k, q.w].map(|value| value.clamp(-1.0, 1.0));
         let mut node = json!({
             "name": name,
             "translation": [pose.translation.x, pose.translation.y, pose.translation.z],
-            // Rounding may make a number of no turn a little more than one, which the format forbids.
-            "rotation": [q.i, q.j, q.k, q.w].map(|value| value.clamp(-1.0, 1.0)),
+            "rotation": rotation,
         });
         let surface = Surface::of(parts);
         if !surface.corners.is_empty() {

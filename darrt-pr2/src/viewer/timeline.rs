@@ -12,6 +12,8 @@ use crate::problem_file::ProblemFile;
 
 /// What part of its greatest speed a joint has while the plan is played; of a joint whose greatest speed is unknown: rad/s.
 const JOINT_PACE: f64 = 0.35;
+/// What goes from one waypoint to the next takes at least so long, seconds: each can be stopped at.
+const SHORTEST_S: f64 = 0.01;
 /// How fast the base drives (m/s) and turns (rad/s) then,
 const BASE_PACE: [f64; 2] = [0.3, 0.6];
 /// and how fast something is pushed at most, m/s.
@@ -154,7 +156,7 @@ impl Act<'_> {
         let base = x.hypot(y) / BASE_PACE[0] + wrap_to_pi(yaw).abs() / BASE_PACE[1];
         let pushed = self.pushes.and_then(|object| Some((from.objects.get(object)?, to.objects.get(object)?)));
         let pushed = pushed.map_or(0.0, |(a, b)| (b.translation.vector - a.translation.vector).norm());
-        joints.fold(0.0, f64::max).max(base).max(pushed / PUSH_PACE_M_PER_S)
+        joints.fold(SHORTEST_S, f64::max).max(base).max(pushed / PUSH_PACE_M_PER_S)
     }
 
     /// Where everything stands `at` waypoints from the beginning, half way between two at 0.5. Writes the poses of the links.
