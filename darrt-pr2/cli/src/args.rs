@@ -133,7 +133,7 @@ pub struct PlanOptions {
     /// Write the plan here [default: PROBLEM.plan.json in the current folder, without the problem's own ending]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Write the picture here, .html or .svg [default: beside the plan, .html]
+    /// Write the picture here: .html (3-D, moving), .svg, .png or .glb [default: beside the plan, .html]
     #[arg(long, value_name = "FILE", conflicts_with = "no_picture")]
     pub picture: Option<PathBuf>,
     /// Write no picture
@@ -186,7 +186,7 @@ pub struct ProblemsOptions {
 pub struct ShowOptions {
     /// Name of a built-in problem, a problem file, or a plan file (.json)
     pub source: String,
-    /// Write the picture here, .html or .svg [default: PROBLEM.html in the current folder]
+    /// Write the picture here: .html (3-D, moving), .svg, .png or .glb [default: PROBLEM.html in the current folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Leave out the small view of every step

@@ -8,6 +8,7 @@ use darrt_task::picture::PictureError;
 use darrt_task::plan_file::PlanFileError;
 use darrt_task::problem_file::ProblemFileError;
 use darrt_task::text::on_one_line;
+use darrt_task::viewer::ViewerError;
 
 /// The exit codes, for scripts. They are part of the interface and written in `darrt --help`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,6 +62,12 @@ impl From<ProblemFileError> for Failure {
 
 impl From<PictureError> for Failure {
     fn from(error: PictureError) -> Self {
+        Self::input(error.to_string())
+    }
+}
+
+impl From<ViewerError> for Failure {
+    fn from(error: ViewerError) -> Self {
         Self::input(error.to_string())
     }
 }

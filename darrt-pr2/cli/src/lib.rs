@@ -15,7 +15,7 @@
 //! | which commands and options are there? | [`args`], [`choices`], [`safety`] |
 //! | what does each command do? | `command` |
 //! | how did it end? | [`exit`] |
-//! | how are texts and files written? | `output` |
+//! | how are texts and files written? | `output`, `drawing` |
 //! | what is seen while it works? | `progress` |
 //! | how are a plan and the planner's counts told? | `steps`, `statistics`, `diagnosis`, `table` |
 //! | how well does it plan? | [`mod@bench`], [`mod@generate`] |
@@ -25,6 +25,7 @@ pub mod bench;
 pub mod choices;
 mod command;
 mod diagnosis;
+mod drawing;
 pub mod exit;
 pub mod generate;
 mod output;

@@ -77,12 +77,12 @@ pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
     a == b || place(a).is_some_and(|a| place(b) == Some(a))
 }
 
-/// Puts `text` at `path` in one move: whoever looks sees the old file, the whole new one, or none.
+/// Puts `bytes` at `path` in one move: whoever looks sees the old file, the whole new one, or none.
 ///
 /// # Errors
 /// [`Exit::CannotWrite`] with the path.
-pub(crate) fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
-    text_file::replace(path, text)
+pub(crate) fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
+    text_file::replace(path, bytes)
         .map_err(|error| Failure::new(Exit::CannotWrite, format!("{}: cannot be written: {error}", path.display())))
 }
 

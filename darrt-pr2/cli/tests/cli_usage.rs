@@ -138,8 +138,8 @@ fn a_problem_is_drawn_by_name_and_from_a_file() {
     std::fs::write(folder.path().join("mine.toml"), text).unwrap();
     assert_eq!(code(&darrt(folder.path(), &["show", "mine.toml", "-o", "mine.svg"])), 0);
     assert!(std::fs::read_to_string(folder.path().join("mine.svg")).unwrap().starts_with("<?xml"));
-    let message = refused(folder.path(), &["show", "bowl", "-o", "bowl.png"], 2);
-    assert!(message.contains("bowl.png") && message.contains(".svg or .html"), "{message}");
+    let message = refused(folder.path(), &["show", "bowl", "-o", "bowl.gif"], 2);
+    assert!(message.contains("bowl.gif") && message.contains(".html, .svg, .png or .glb"), "{message}");
 }
 
 #[test]

@@ -9,7 +9,7 @@
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
 //! | where does the time go? | [`profile`] |
 //! | how are files read, written and described? | [`text_file`], [`text`], [`schema`] |
-//! | what does a person see? | [`picture`] |
+//! | what does a person see? | [`picture`], [`viewer`] |
 //!
 //! Nothing here names a robot.
 
@@ -36,4 +36,5 @@ mod testing;
 pub mod text;
 pub mod text_file;
 pub mod verify;
+pub mod viewer;
 pub mod world;

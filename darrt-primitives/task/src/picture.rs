@@ -1,4 +1,4 @@
-//! A picture of a problem or a plan: one self-contained SVG or HTML file that needs no network.
+//! A picture of a problem or a plan: one self-contained SVG file, also for papers.
 //!
 //! It shows the room from above and from two sides, a close-up of the surface where the object starts, and for a plan
 //! the object's way and the robot at the end of each step, coloured by primitive as in the paper's figures 5 and 6, and
@@ -13,6 +13,7 @@
 //! | what is the silhouette of a solid? | `outline` |
 //! | how are the room, the robot, the ways drawn? | `room`, `figure`, `journey` |
 //! | what is on the page? | `page`, `overview`, `filmstrip` |
+//! | how does it become a PNG file? | [`raster`] |
 
 mod abridged;
 pub mod act;
@@ -27,6 +28,7 @@ mod overview;
 mod page;
 pub mod palette;
 mod panel;
+pub mod raster;
 mod room;
 pub mod story;
 pub mod travel;
@@ -82,8 +84,14 @@ pub enum PictureError {
         /// Its largest size.
         bound: f64,
     },
+    /// The picture cannot be turned into dots.
+    #[error("the picture cannot be written as PNG: {reason}")]
+    Raster {
+        /// Why.
+        reason: String,
+    },
     /// The ending of the file names no format.
-    #[error("{file}: a picture is an .svg or .html file")]
+    #[error("{file}: a picture is an .html, .svg, .png or .glb file")]
     Format {
         /// The file.
         file: String,
@@ -93,22 +101,28 @@ pub enum PictureError {
 /// The kinds of picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// An SVG image.
+    /// The picture as an SVG image.
     Svg,
-    /// A page with the image inside.
+    /// The same as a raster image.
+    Png,
+    /// The [viewer](crate::viewer)'s page, the picture inside.
     Html,
+    /// The [viewer](crate::viewer)'s scene, moving, for other programs: binary glTF.
+    Glb,
 }
 
 impl Format {
     /// The format that the ending of a file name asks for.
     ///
     /// # Errors
-    /// [`PictureError::Format`] for any ending but `svg`, `html` and `htm` (in any case).
+    /// [`PictureError::Format`] for any ending but `svg`, `png`, `html`, `htm` and `glb` (in any case).
     pub fn of_path(path: &Path) -> Result<Self, PictureError> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         match ending.as_deref() {
             Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
             Some("html" | "htm") => Ok(Self::Html),
+            Some("glb") => Ok(Self::Glb),
             _ => Err(PictureError::Format { file: path.display().to_string() }),
         }
     }
@@ -124,25 +138,10 @@ pub enum Extent {
     Overview,
 }
 
-/// The text of the picture file; the same story gives the same bytes. Of a long plan only some steps are drawn, which the
+/// The picture as an SVG file; the same story gives the same bytes. Of a long plan only some steps are drawn, which the
 /// picture says.
-pub fn draw(story: &Story, format: Format, extent: Extent) -> String {
-    let image = page::draw(&story.abridged(), extent);
-    match format {
-        Format::Svg => format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{image}\n"),
-        Format::Html => {
-            let title = if story.problem.title.is_empty() { &story.problem.name } else { &story.problem.title };
-            let title = svg::node::Text::new(ink::clean(title));
-            format!(
-                "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-                 <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}</title>\n\
-                 <style>body {{ margin: 0; background: #ffffff }} \
-                 svg.page {{ display: block; margin: 0 auto; max-width: 100%; height: auto }}</style>\n\
-                 </head>\n<body>\n{}\n</body>\n</html>\n",
-                image.to_string().replacen("<svg ", "<svg class=\"page\" ", 1)
-            )
-        }
-    }
+pub fn draw(story: &Story, extent: Extent) -> String {
+    format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}\n", page::draw(&story.abridged(), extent))
 }
 
 #[cfg(test)]

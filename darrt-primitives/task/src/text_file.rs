@@ -77,13 +77,13 @@ pub fn one_line(message: &str) -> String {
     on_one_line(&cut).into_owned()
 }
 
-/// Puts `text` at `path` in one move: whoever looks sees the old file, the whole new one, or none.
+/// Puts `bytes` at `path` in one move: whoever looks sees the old file, the whole new one, or none.
 ///
 /// # Errors
 /// What the system says; what was at `path` before is then untouched, and nothing is left beside it.
-pub fn replace(path: &Path, text: &str) -> io::Result<()> {
+pub fn replace(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
     let mut file = beside(path)?;
-    file.write_all(text.as_bytes())?;
+    file.write_all(bytes.as_ref())?;
     file.as_file().sync_all()?;
     file.persist(path).map_err(|error| error.error)?;
     Ok(())

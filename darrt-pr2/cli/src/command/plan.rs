@@ -10,8 +10,8 @@ use crate::args::PlanOptions;
 use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
 use crate::progress::Progress;
-use crate::{diagnosis, safety, statistics, steps};
-use darrt_task::picture::{self, Extent, Format, Story, Travel};
+use crate::{diagnosis, drawing, safety, statistics, steps};
+use darrt_task::picture::{Extent, Format, Story, Travel};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::planning::{PlanRequest, PlanResult};
 use darrt_task::problem_file::ProblemFile;
@@ -41,7 +41,7 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
     let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
     let story = Story::of_plan(plan, &robot)?;
     // First of all: a terminal that has gone away must not cost the plan.
-    files.write(plan, &story)?;
+    plan.write(&files.plan)?;
     if !options.quiet {
         output.print(&summary(&request, &result, cancel.is_cancelled()))?;
         if let Some(words) = improvement(&result, &story, &robot)? {
@@ -54,6 +54,10 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
             output.print(&safety::notices(&proof.warnings))?;
         }
         check::notices(plan, output)?;
+    }
+    // Last: nobody waits for a picture to read the steps.
+    files.draw(plan, &story, &robot)?;
+    if !options.quiet {
         output.print(&files.words())?;
     }
     Ok(Exit::Solved)
@@ -176,10 +180,11 @@ impl Files {
         Ok(Self { plan, picture })
     }
 
-    fn write(&self, plan: &PlanFile, story: &Story) -> Result<(), Failure> {
-        plan.write(&self.plan)?;
+    fn draw(&self, plan: &PlanFile, story: &Story, robot: &RobotFacts) -> Result<(), Failure> {
         match &self.picture {
-            Some((path, format)) => output::write_file(path, &picture::draw(story, *format, Extent::Whole)),
+            Some((path, format)) => {
+                output::write_file(path, &drawing::file(story, Some(plan), robot, *format, Extent::Whole)?)
+            }
             None => Ok(()),
         }
     }

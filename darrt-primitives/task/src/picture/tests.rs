@@ -65,38 +65,36 @@ fn story() -> Story {
 }
 
 #[test]
-fn every_embedded_problem_has_a_picture_in_both_formats() {
+fn every_embedded_problem_has_a_picture() {
     for name in builtin_names() {
         let problem = builtin(name).unwrap();
         let story = Story::of_problem(&problem, &facts(&problem)).unwrap();
-        let image = draw(&story, Format::Svg, Extent::Whole);
+        let image = draw(&story, Extent::Whole);
         assert!(image.starts_with("<?xml") && image.trim_end().ends_with("</svg>"), "{name}");
         assert!(!image.contains("NaN") && !image.contains("inf"), "{name}");
-        let page = draw(&story, Format::Html, Extent::Whole);
-        assert!(page.starts_with("<!DOCTYPE html>") && page.contains("<svg class=\"page\""), "{name}");
     }
 }
 
 #[test]
 fn pictures_need_nothing_from_elsewhere_and_are_the_same_twice() {
     let story = story();
-    let page = draw(&story, Format::Html, Extent::Whole);
+    let page = draw(&story, Extent::Whole);
     for foreign in ["href=", "src=", "url(", "<script", "@import"] {
         assert!(!page.contains(foreign), "{foreign}");
     }
-    assert_eq!(page, draw(&story, Format::Html, Extent::Whole));
+    assert_eq!(page, draw(&story, Extent::Whole));
 }
 
 #[test]
 fn every_step_has_a_number_a_name_and_a_distance() {
     let story = story();
-    let image = draw(&story, Format::Svg, Extent::Whole);
+    let image = draw(&story, Extent::Whole);
     for (number, step) in (1..).zip(&story.steps) {
         assert!(image.contains(&format!("<title>step {number}: {}</title>", step.primitive)) || step.object.is_none());
         assert!(image.contains(&format!(">{number}</text>")), "step {number}");
     }
     assert!(image.contains("object 0.58 m"));
-    let overview = draw(&story, Format::Svg, Extent::Overview);
+    let overview = draw(&story, Extent::Overview);
     assert!(overview.len() < image.len() && !overview.contains("object 0.58 m"));
     assert!(image.contains("Seed 1."));
 }
@@ -105,7 +103,7 @@ fn every_step_has_a_number_a_name_and_a_distance() {
 fn hostile_names_do_not_break_the_file() {
     let mut story = story();
     story.problem.title = "<script>&\u{1}\"".to_owned();
-    let page = draw(&story, Format::Html, Extent::Whole);
+    let page = draw(&story, Extent::Whole);
     assert!(!page.contains("<script") && page.contains("&lt;script&gt;&amp; \""));
     assert_eq!(page.matches("<svg ").count(), page.matches("</svg>").count());
 }
@@ -115,8 +113,9 @@ fn the_format_follows_the_ending() {
     let format = |path: &str| Format::of_path(Path::new(path));
     assert_eq!(format("a/b.SVG").unwrap(), Format::Svg);
     assert_eq!(format("b.htm").unwrap(), Format::Html);
-    for bad in ["b", "b.png", "svg"] {
-        assert!(format(bad).unwrap_err().to_string().contains(".svg or .html"), "{bad}");
+    assert_eq!((format("b.png").unwrap(), format("b.GLB").unwrap()), (Format::Png, Format::Glb));
+    for bad in ["b", "b.gif", "svg"] {
+        assert!(format(bad).unwrap_err().to_string().contains(".html, .svg, .png or .glb"), "{bad}");
     }
 }
 
@@ -136,7 +135,7 @@ fn long_plans_are_drawn_in_part_and_say_so() {
     let badges = |image: &str| image.matches("font-weight=\"bold\"").count();
     let long = long_story(10);
     assert_eq!(long.steps.len(), 210);
-    let image = draw(&long, Format::Svg, Extent::Whole);
+    let image = draw(&long, Extent::Whole);
     // 70 steps when like ones are joined, 30 of them drawn.
     assert!(image.contains("Steps of one kind in a row are drawn as one. 120 of the 210 steps are not drawn"));
     assert!(image.contains("<title>step 208\u{2013}210: Place</title>") && image.contains(">210</text>"));
@@ -147,7 +146,7 @@ fn long_plans_are_drawn_in_part_and_say_so() {
     for first in (1..=208).step_by(3) {
         assert!(image.contains(&format!("<title>step {first}\u{2013}{}", first + 2)), "{first}");
     }
-    let joined = draw(&long_story(3), Format::Svg, Extent::Whole);
+    let joined = draw(&long_story(3), Extent::Whole);
     assert!(joined.contains("drawn as one.") && !joined.contains("are not drawn"));
-    assert!(!draw(&story(), Format::Svg, Extent::Whole).contains("drawn as one"));
+    assert!(!draw(&story(), Extent::Whole).contains("drawn as one"));
 }
