@@ -205,7 +205,7 @@ impl Told {
 
     fn write(&self, all: &Collection, known: &[&str]) -> Result<(), Failure> {
         if let Some(path) = &self.report {
-            output::write_file(path, &report::page(all, known))?;
+            output::write_file(path, report::page(all, known))?;
         }
         let Some(folder) = &self.logs else { return Ok(()) };
         for problem in all.problems(known) {
