@@ -12,6 +12,11 @@ pub mod trace;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Event<'a> {
+    /// Before the search: what makes it unlikely that there is a plan. The search goes on.
+    Doubt {
+        /// In words.
+        reason: &'a str,
+    },
     /// An attempt starts from the initial state (attempt 0 is the first; each later one is a restart).
     AttemptStarted {
         /// Number of the attempt.

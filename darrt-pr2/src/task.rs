@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use darrt_primitives::kinematics::{RobotDescription, folders_above};
 use darrt_primitives::manipulator::{Configuration, Hand};
 use darrt_task::problem_file::{ArmSide, Limits, Robot as RobotSettings};
 use darrt_task::robot::{JointValues, RobotError, RobotFacts, TaskRobot};
@@ -67,9 +68,10 @@ impl TaskRobot for Pr2 {
 
     fn facts(settings: &RobotSettings) -> Result<RobotFacts, RobotError> {
         let description = match &settings.urdf {
-            Some(path) => Arc::new(darrt_primitives::kinematics::RobotDescription::from_file(path)?),
+            Some(path) => Arc::new(RobotDescription::from_file(path)?),
             None => embedded_description()?,
         };
+        description.check_shapes(&settings.shapeless)?;
         let side = side_of(settings);
         let prefix = side.prefix();
         let [arm, other] = starts(settings)?;
@@ -131,8 +133,7 @@ fn torso_m(settings: &RobotSettings) -> Result<f64, RobotError> {
 }
 
 fn folders(settings: &RobotSettings) -> Vec<PathBuf> {
-    let beside = settings.urdf.as_ref().map(|path| path.parent().map_or_else(|| PathBuf::from("."), PathBuf::from));
-    beside.into_iter().collect()
+    settings.urdf.as_deref().map(folders_above).unwrap_or_default()
 }
 
 /// Where the arm that manipulates starts, and where the other one is parked.

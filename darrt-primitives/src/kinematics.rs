@@ -24,7 +24,7 @@ pub mod tree;
 pub mod urdf;
 
 pub use batch::{BatchForward, BatchPoses, PoseLanes};
-pub use collision::{link_bodies, mesh_folders, no_meshes};
+pub use collision::{folders_above, link_bodies, mesh_folders, no_meshes};
 pub use jacobian::Chain;
 pub use limit::JointLimit;
 pub use numeric_inverse::{InverseOptions, NumericInverse};

@@ -1,5 +1,6 @@
 //! The lines that show that the planner works, and how much is done; on a terminal only.
 
+use std::io::Write as _;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -18,6 +19,7 @@ pub(crate) struct Progress {
     counts: Counts,
     deadline: Option<Instant>,
     next: Instant,
+    is_quiet: bool,
 }
 
 /// What the line says.
@@ -42,7 +44,16 @@ impl Progress {
         bar.enable_steady_tick(PERIOD);
         let now = Instant::now();
         let counts = Counts { iterations: 0, nodes: 1, nearest: f64::INFINITY, restarts: 0 };
-        Self { bar, counts, deadline: limit.and_then(|limit| now.checked_add(limit)), next: now }
+        Self { bar, counts, deadline: limit.and_then(|limit| now.checked_add(limit)), next: now, is_quiet }
+    }
+
+    /// A line that stays.
+    fn tell(&self, doubt: &str) {
+        if !self.is_quiet {
+            // A standard error that has gone away is no reason not to plan.
+            let line = printable(doubt);
+            let _ = writeln!(std::io::stderr().lock(), "doubtful: {line}; it is searched for all the same");
+        }
     }
 
     /// Takes the line away.
@@ -117,6 +128,9 @@ impl Counts {
 
 impl Observer for Progress {
     fn on_event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        if let Event::Doubt { reason } = event {
+            self.bar.suspend(|| self.tell(reason));
+        }
         self.counts.add(event);
         let now = Instant::now();
         if !self.bar.is_hidden() && now >= self.next {

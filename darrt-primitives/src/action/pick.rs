@@ -122,6 +122,12 @@ impl Picking<'_> {
 /// How many grasps are drawn for one that is tried: most rim grasps meet the table.
 const GRASPS_PER_TRY: usize = 16;
 
+/// Does no grasp of `object` fit where it stands, because all of them need its rim to overhang an edge and it does not?
+pub fn lies_flat<M: Manipulator>(m: &Tabletop<M>, at: &TabletopState<M>, object: ObjectId) -> bool {
+    let (Some(movable), Some(pose)) = (m.movable(object), at.object(object)) else { return false };
+    movable.grasps.iter().all(|family| family.needs_overhang()) && !overhangs(m, at, object, movable, pose)
+}
+
 /// Does the rim stick out anywhere, so that it is worth asking where?
 pub(super) fn overhangs<M: Manipulator>(
     m: &Tabletop<M>,

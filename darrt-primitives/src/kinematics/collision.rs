@@ -35,6 +35,12 @@ pub fn no_meshes(_filename: &str) -> Option<PathBuf> {
     None
 }
 
+/// The folder of a robot description and those above it, where packages mostly lie: for [`mesh_folders`].
+pub fn folders_above(description: &Path) -> Vec<PathBuf> {
+    let absolute = std::path::absolute(description).unwrap_or_else(|_| description.to_path_buf());
+    absolute.ancestors().skip(1).map(Path::to_path_buf).collect()
+}
+
 /// Looks meshes up in folders: `package://name/rest` is `name/rest` in the first folder that has it, `file://` and
 /// absolute paths are taken as they are, a relative path is looked up in every folder.
 pub fn mesh_folders(folders: &[PathBuf]) -> impl Fn(&str) -> Option<PathBuf> + '_ {
@@ -70,6 +76,10 @@ fn link_body(link: &LinkDescription, mesh_path: &dyn Fn(&str) -> Option<PathBuf>
     Body::new(Arc::clone(&link.name), parts).map(Some).map_err(refused(0))
 }
 
+/// Where meshes are looked for, for people.
+const NOT_FOUND: &str = "there is no such file: what follows `package://`, and every relative path, is looked for in the \
+                         folder of the robot description and in the folders above it";
+
 fn mesh(
     link: &str,
     filename: &str,
@@ -77,7 +87,7 @@ fn mesh(
     mesh_path: &dyn Fn(&str) -> Option<PathBuf>,
 ) -> Result<Shape, UrdfError> {
     let refused = |reason: String| UrdfError::Mesh { link: link.to_owned(), filename: filename.to_owned(), reason };
-    let path = mesh_path(filename).ok_or_else(|| refused("no such file in the folders given for meshes".to_owned()))?;
+    let path = mesh_path(filename).ok_or_else(|| refused(NOT_FOUND.to_owned()))?;
     let mesh = TriangleMesh::from_file(&path, scale).map_err(|e| refused(e.to_string()))?;
     Shape::convex_hull(filename, mesh.vertices()).map_err(|e| refused(e.to_string()))
 }

@@ -44,15 +44,28 @@ struct Scan<'a> {
 impl Scan<'_> {
     fn document(&mut self) -> Result<(), UrdfError> {
         while let Some(offset) = self.rest().iter().position(|b| *b == b'<') {
+            self.nothing_beside_root(offset)?;
             self.at += offset;
             self.markup()?;
         }
+        self.nothing_beside_root(self.rest().len())?;
         if self.depth == 0 {
             Ok(())
         } else {
             self.at = self.bytes.len();
             Err(self.malformed("an element is not closed"))
         }
+    }
+
+    /// Outside the root element there is no text in the next `length` bytes.
+    fn nothing_beside_root(&mut self, length: usize) -> Result<(), UrdfError> {
+        // A byte-order mark may come first.
+        let is_text = |b: &u8| !matches!(b, b' ' | b'\t' | b'\r' | b'\n' | 0xEF | 0xBB | 0xBF);
+        let found = self.rest().iter().take(length).position(is_text).filter(|_| self.depth == 0);
+        found.map_or(Ok(()), |offset| {
+            self.at += offset;
+            Err(self.malformed("text outside the root element"))
+        })
     }
 
     /// One construct that starts with `<`.
@@ -91,6 +104,9 @@ impl Scan<'_> {
 
     fn open_tag(&mut self) -> Result<(), UrdfError> {
         let start = self.at;
+        if self.depth == 0 && self.elements > 0 {
+            return Err(self.malformed("a second root element"));
+        }
         self.name("a tag without a name")?;
         self.elements += 1;
         bounded("elements", self.elements, MAX_ELEMENTS)?;

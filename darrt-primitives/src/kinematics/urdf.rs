@@ -6,6 +6,7 @@
 
 mod check;
 mod error;
+mod vocabulary;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -40,6 +41,8 @@ pub struct LinkDescription {
     pub name: Arc<str>,
     /// Collision geometry, in file order.
     pub collision: Vec<PlacedGeometry>,
+    /// Does it have a visual, which planning does not look at?
+    pub has_visual: bool,
 }
 
 /// A piece of geometry at its place in the link frame.
@@ -143,8 +146,26 @@ impl RobotDescription {
     /// Every [`UrdfError`] but those of files: each names the element, the value found and the bound it broke.
     pub fn from_text(text: &str) -> Result<Self, UrdfError> {
         guard::check(text)?;
+        vocabulary::check(text)?;
         let parsed = urdf_rs::read_from_string(text).map_err(|e| UrdfError::Syntax { message: e.to_string() })?;
         check::checked(&parsed)
+    }
+
+    /// Checks that every link with a visual has a collision shape too, but for those in `shapeless`: planning would drive
+    /// through it.
+    ///
+    /// # Errors
+    /// [`UrdfError::VisualOnly`] with the first such link; [`UrdfError::NoSuchLink`] for a name in `shapeless` that no link has.
+    pub fn check_shapes(&self, shapeless: &[String]) -> Result<(), UrdfError> {
+        let is_there = |name: &&String| self.links.iter().any(|link| *link.name == **name);
+        if let Some(name) = shapeless.iter().find(|name| !is_there(name)) {
+            return Err(UrdfError::NoSuchLink { name: name.clone() });
+        }
+        let is_bare = |link: &&LinkDescription| link.has_visual && link.collision.is_empty();
+        match self.links.iter().filter(is_bare).find(|link| !shapeless.iter().any(|name| **name == *link.name)) {
+            Some(link) => Err(UrdfError::VisualOnly { link: link.name.to_string() }),
+            None => Ok(()),
+        }
     }
 
     /// Reads and checks a URDF file.

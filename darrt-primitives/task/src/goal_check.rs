@@ -14,7 +14,7 @@ use nalgebra::{Isometry3, Translation3};
 
 use crate::planning_error::PlanningError;
 use darrt_primitives::manipulator::Manipulator;
-use darrt_primitives::tabletop::Tabletop;
+use darrt_primitives::tabletop::{Tabletop, TabletopState};
 
 /// How many samples of an infinite goal are tried before it counts as blocked.
 const SAMPLES: u64 = 64;
@@ -25,7 +25,8 @@ const ON_TOP: f64 = FLUSH_HEIGHT + 1e-6;
 /// Solids that overlap less than this do not block, metres.
 const ROUNDING: f64 = 1e-9;
 
-/// Checks that some goal pose of every named object is free of the fixed bodies.
+/// Checks that some goal pose of every named object is free of the fixed bodies, of the objects that never move
+/// (`immovable`, at their poses in `start`), and of where the others shall be.
 ///
 /// # Errors
 /// [`PlanningError::GoalBlocked`] with the object and what is in the way; [`PlanningError::Geometry`] when that cannot
@@ -34,11 +35,14 @@ pub fn check_goal<M: Manipulator>(
     m: &Tabletop<M>,
     goal: &TabletopGoal<M::Joints>,
     scene: &Scene,
+    start: &TabletopState<M>,
+    immovable: &[ObjectId],
 ) -> Result<(), PlanningError> {
+    let room = Room { m, goal, scene, start, immovable };
     let mut blocked = None;
     for i in 0..SAMPLES {
         let Some(target) = goal.sample(m, &mut stream(0, 0, i, Purpose::Attempt)) else { return Ok(()) };
-        match first_blocked(m, &target, scene)? {
+        match room.first_blocked(&target)? {
             None => return Ok(()),
             found => blocked = found,
         }
@@ -46,19 +50,65 @@ pub fn check_goal<M: Manipulator>(
     blocked.map_or(Ok(()), Err)
 }
 
-/// The first object of `target` that something fixed is in the way of.
-fn first_blocked<M: Manipulator>(
-    m: &Tabletop<M>,
-    target: &PartialState<Tabletop<M>>,
-    scene: &Scene,
-) -> Result<Option<PlanningError>, GeomError> {
-    for (id, pose) in target.objects() {
-        let Some(movable) = m.movable(id) else { continue };
-        if let Some(blame) = in_the_way(m, id, &movable.body, pose, scene)? {
-            return Ok(Some(PlanningError::GoalBlocked { object: movable.body.name.to_string(), blame }));
+/// What an object at its goal can meet.
+struct Room<'a, M: Manipulator> {
+    m: &'a Tabletop<M>,
+    goal: &'a TabletopGoal<M::Joints>,
+    scene: &'a Scene,
+    start: &'a TabletopState<M>,
+    immovable: &'a [ObjectId],
+}
+
+impl<M: Manipulator> Room<'_, M> {
+    /// The first object of `target` that something is in the way of.
+    fn first_blocked(&self, target: &PartialState<Tabletop<M>>) -> Result<Option<PlanningError>, GeomError> {
+        for (id, pose) in target.objects() {
+            let Some(movable) = self.m.movable(id) else { continue };
+            let blame = match in_the_way(self.m, id, &movable.body, pose, self.scene)? {
+                None => self.object_in_the_way(id, &movable.body, pose, target)?,
+                found => found,
+            };
+            if let Some(blame) = blame {
+                let [x, y, z] = <[f64; 3]>::from(pose.translation.vector);
+                let blame = format!("at ({x:.3}, {y:.3}, {z:.3}) it touches {blame}");
+                return Ok(Some(PlanningError::GoalBlocked { object: movable.body.name.to_string(), blame }));
+            }
         }
+        Ok(None)
     }
-    Ok(None)
+
+    /// The object that `body` at `pose` would touch however far both may be off: one that never moves, or one at its own goal.
+    fn object_in_the_way(
+        &self,
+        id: ObjectId,
+        body: &Body,
+        pose: &Isometry3<f64>,
+        target: &PartialState<Tabletop<M>>,
+    ) -> Result<Option<String>, GeomError> {
+        let still = self.immovable.iter().filter_map(|other| Some((*other, self.start.object(*other)?, true)));
+        for (other, there, is_immovable) in still.chain(target.objects().map(|(other, pose)| (other, pose, false))) {
+            let Some(movable) = self.m.movable(other).filter(|_| other != id) else { continue };
+            let slack_m = self.tolerance_m(id) + if is_immovable { 0.0 } else { self.tolerance_m(other) };
+            // Of meshes it is not known how deep something is in them.
+            let is_mesh =
+                [body, &movable.body].iter().any(|b| b.parts.iter().any(|p| matches!(p.shape, Shape::Mesh(_))));
+            if !is_mesh && between(body, pose, &movable.body, there)?.distance < -(slack_m + ROUNDING) {
+                let name = &movable.body.name;
+                return Ok(Some(if is_immovable {
+                    format!("`{name}`, which never moves")
+                } else {
+                    format!("`{name}`, which has its goal there")
+                }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// How far an object may be off its goal, metres.
+    fn tolerance_m(&self, id: ObjectId) -> f64 {
+        let goals = self.goal.groups().iter().flatten().filter(|goal| goal.object == id);
+        goals.fold(0.0, |most, goal| goal.tolerance_m.max(most))
+    }
 }
 
 /// The fixed body that `body` at `pose` would touch, other than what it stands on.
@@ -75,8 +125,7 @@ fn in_the_way<M: Manipulator>(
     for fixed in scene.bodies().iter().filter(|fixed| !stands_on(&fixed.body.name)) {
         let gap = between(body, &raised, &fixed.body, &fixed.world_from_body)?;
         if overlap(&gap, body, fixed) {
-            let [x, y, z] = <[f64; 3]>::from(pose.translation.vector);
-            return Ok(Some(format!("at ({x:.3}, {y:.3}, {z:.3}) it touches `{}`", fixed.body.name)));
+            return Ok(Some(format!("`{}`", fixed.body.name)));
         }
     }
     Ok(None)
@@ -106,8 +155,8 @@ mod tests {
         let (head, tail) = text.split_once("on = \"side table\"\nat = [-2.14, -1.09]").unwrap();
         let tail = tail.replacen("state = \"released\"", "", 1);
         let problem = ProblemFile::from_toml(&format!("{head}{goal}{tail}\n{more}"), "text").unwrap();
-        let Built { world, goal, scene, .. } = world::build(&crate::testing::registry(), &problem).unwrap();
-        check_goal(&world, &goal, &scene)
+        let Built { world, start, goal, scene, .. } = world::build(&crate::testing::registry(), &problem).unwrap();
+        check_goal(&world, &goal, &scene, &start, &[])
     }
 
     #[test]
@@ -136,13 +185,54 @@ mod tests {
         checked(goal, &stone([-1.0, 1.5, 1.0])).unwrap();
     }
 
+    /// Two tins on a table, 0.2 m apart, with the goal lines and the second one's keys; how preparing them ends.
+    fn tins(second: &str, goals: &str) -> Result<(), PlanningError> {
+        let tin = |name: &str, y: f64, keys: &str| {
+            format!(
+                "[[object]]\nname = \"{name}\"\nshape = {{ cylinder = {{ radius = 0.035, height = 0.10 }} }}\n\
+                 on = \"central table\"\nat = [-0.2, {y}]\n{keys}\n"
+            )
+        };
+        let text = builtin_text("plate1").unwrap();
+        let (head, _) = text.split_once("[[object]]").unwrap();
+        let tins = tin("tin", 0.2, "grasps = [\"side\"]") + &tin("jar", -0.1, second);
+        let problem = ProblemFile::from_toml(&format!("{head}{tins}{goals}"), "text").unwrap();
+        crate::planning::prepare(&crate::testing::registry(), &problem).map(|_| ())
+    }
+
+    fn goal(object: &str, y: f64) -> String {
+        format!("[[goal.object]]\nobject = \"{object}\"\non = \"central table\"\nat = [-0.2, {y}]\n")
+    }
+
+    #[test]
+    fn goals_that_cannot_hold_together_are_blocked() {
+        let grasps = "grasps = [\"side\"]";
+        let message = tins(grasps, &(goal("tin", -0.3) + &goal("jar", -0.32))).unwrap_err().to_string();
+        assert!(
+            message.contains("the goal of `tin` is blocked") && message.contains("`jar`, which has its goal there"),
+            "{message}"
+        );
+        tins(grasps, &(goal("tin", -0.3) + &goal("jar", -0.38))).unwrap();
+        // Each may be off by so much that both have room.
+        let loose = |object: &str, y: f64| goal(object, y) + "tolerance_m = 0.03\n";
+        tins(grasps, &(loose("tin", -0.3) + &loose("jar", -0.32))).unwrap();
+    }
+
+    #[test]
+    fn a_goal_under_what_never_moves_is_blocked() {
+        let message = tins("grasps = []\npushable = false", &goal("tin", -0.1)).unwrap_err().to_string();
+        assert!(message.contains("`jar`, which never moves"), "{message}");
+        tins("grasps = []", &goal("tin", -0.1)).unwrap();
+    }
+
     #[test]
     fn what_cannot_be_judged_is_an_error() {
         let text = builtin_text("plate1").unwrap();
-        let Built { world, scene, .. } =
+        let Built { world, start, goal, scene, .. } =
             world::build(&crate::testing::registry(), &ProblemFile::from_toml(text, "text").unwrap()).unwrap();
+        let room = Room { m: &world, goal: &goal, scene: &scene, start: &start, immovable: &[] };
         let far = PartialState::anywhere(&world).with_object(ObjectId::new(0), Isometry3::translation(1e9, 0.0, 1.0));
-        let error = first_blocked(&world, &far, &scene).unwrap_err().to_string();
+        let error = room.first_blocked(&far).unwrap_err().to_string();
         assert!(error.contains("plate"), "{error}");
     }
 }

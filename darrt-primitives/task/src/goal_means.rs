@@ -43,15 +43,15 @@ pub fn check_means(
 }
 
 /// What can be done with one object, each with the reason why not.
-struct Means<'a> {
+pub(crate) struct Means<'a> {
     object: &'a Object,
-    pick: Result<(), String>,
-    place: Result<(), String>,
-    push: Result<(), String>,
+    pub(crate) pick: Result<(), String>,
+    pub(crate) place: Result<(), String>,
+    pub(crate) push: Result<(), String>,
 }
 
 impl<'a> Means<'a> {
-    fn new(
+    pub(crate) fn new(
         problem: &ProblemFile,
         object: &'a Object,
         allowed: &[(PrimitiveId, Contract)],

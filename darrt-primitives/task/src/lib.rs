@@ -4,7 +4,8 @@
 //! |---|---|
 //! | what must a robot say of itself? | [`robot`] |
 //! | which primitives, samplers, distances and problems are there? | [`registry`], and for command lines [`program`] |
-//! | what is a problem? | [`problem_file`], [`grasp_families`], [`goal_means`], [`goal_check`], [`goal_edges`] |
+//! | what is a problem? | [`problem_file`], [`grasp_families`], [`goal_edges`] |
+//! | is it hopeless? | [`goal_means`], [`goal_check`], `doubts` |
 //! | how is it planned? | [`world`] (with the private `supports`), [`planning`] |
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
 //! | where does the time go? | [`profile`] |
@@ -13,6 +14,7 @@
 //!
 //! Nothing here names a robot.
 
+mod doubts;
 pub mod export;
 pub mod file_kind;
 pub mod goal_check;

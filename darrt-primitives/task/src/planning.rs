@@ -8,8 +8,8 @@ use darrt_core::cost::{ExecutionCost, plan_seconds};
 use darrt_core::extend::ExtendOptions;
 use darrt_core::goal::Goal;
 use darrt_core::improve::{ImproveOptions, Improvement};
-use darrt_core::observe::Observer;
 use darrt_core::observe::accounts::Accounts;
+use darrt_core::observe::{Event, Observer};
 use darrt_core::plan::Plan;
 use darrt_core::problem::{Parts, Problem};
 use darrt_core::sample::{GoalBiased, Placed};
@@ -23,6 +23,7 @@ use darrt_primitives::surroundings::NearPair;
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
 use darrt_primitives::validity::SceneValidity;
 
+use crate::doubts::Outlook;
 use crate::export::{Exporter, Written};
 use crate::plan_file::{PlanFile, PlannerFacts, SearchName};
 use crate::planning_error::PlanningError;
@@ -124,6 +125,8 @@ pub struct PlanResult {
     pub plans: u64,
     /// What the problem itself puts nearer to each other than the least margin.
     pub near: Vec<NearPair>,
+    /// What made a plan unlikely before the search, in words.
+    pub doubts: Vec<String>,
     /// Why it stopped.
     pub stop: Stop,
     /// Counts per primitive.
@@ -187,6 +190,8 @@ pub struct Prepared<M: TaskRobot> {
     pub problem: Problem<Tabletop<M>>,
     /// What the problem itself puts nearer to each other than the least margin.
     pub near: Vec<NearPair>,
+    /// What makes a plan unlikely, in words; empty for most problems.
+    pub doubts: Vec<String>,
     exporter: Arc<Exporter>,
 }
 
@@ -221,11 +226,15 @@ fn prepare_watched<M: TaskRobot>(
     registry.check(file, &file.name)?;
     registry.check_companions(file)?;
     let (robot, arm) = M::build(&file.robot)?;
-    crate::goal_means::check_means(file, registry.allowed(file), &robot)?;
+    let allowed: Vec<_> = registry.allowed(file).collect();
+    crate::goal_means::check_means(file, allowed.iter().copied(), &robot)?;
     let robot = if request.bases_from_reachability { robot.with_bases_from_reachability() } else { robot };
     let Built { world, start, goal, scene, near } = world::build_with(registry, file, robot, arm)?;
     let validity = SceneValidity::new(&world);
-    crate::goal_check::check_goal(&world, &goal, &scene)?;
+    let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal, scene: &scene };
+    crate::goal_check::check_goal(&world, &goal, &scene, &start, &outlook.immovable())?;
+    outlook.check_rims()?;
+    let doubts = outlook.doubts();
     let facts = Arc::new(M::facts(&file.robot)?);
     let exporter = Arc::new(Exporter::new(file, &facts)?);
     let verifier =
@@ -239,7 +248,7 @@ fn prepare_watched<M: TaskRobot>(
         validity: Box::new(Timed { part: validity, watch: Arc::clone(watch) }),
         verifier: Box::new(verifier),
     })?;
-    Ok(Prepared { problem, near, exporter })
+    Ok(Prepared { problem, near, doubts, exporter })
 }
 
 /// Plans. Stopping without a plan is a result, not an error.
@@ -281,6 +290,11 @@ pub fn plan<M: TaskRobot>(
         return Err(PlanningError::NoLimit);
     }
     let begun = watch.elapsed();
+    for reason in &prepared.doubts {
+        if observer.on_event(&Event::Doubt { reason }).is_break() {
+            cancel.cancel();
+        }
+    }
     let observer = &mut Watched { observer, watch: Arc::clone(&watch), plans: 0 };
     let strategy = &strategy;
     let members: Vec<_> =
@@ -333,6 +347,7 @@ fn result<M: TaskRobot>(
         found,
         plans: 0,
         near: prepared.near.clone(),
+        doubts: prepared.doubts.clone(),
         stop: outcome.stop,
         accounts: outcome.accounts,
         iterations: outcome.iterations,

@@ -52,6 +52,7 @@ fn link(link: &urdf_rs::Link) -> Result<LinkDescription, UrdfError> {
     Ok(LinkDescription {
         name: Arc::from(link.name.as_str()),
         collision: link.collision.iter().map(place).collect::<Result<_, _>>()?,
+        has_visual: !link.visual.is_empty(),
     })
 }
 

@@ -69,6 +69,41 @@ pub enum UrdfError {
         /// What the URDF reader said.
         message: String,
     },
+    /// A name that means nothing and is nearly one that does.
+    #[error("line {line}: there is no {kind} `{name}` here, did you mean `{nearest}`?")]
+    UnknownWord {
+        /// `element` or `attribute`.
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// The nearest known one.
+        nearest: &'static str,
+        /// Line of the text, from 1.
+        line: u32,
+    },
+    /// A text that xacro has not been run on.
+    #[error("line {line}: {found} is left over from xacro; run xacro on the file first")]
+    Xacro {
+        /// What is left over.
+        found: String,
+        /// Line of the text, from 1.
+        line: u32,
+    },
+    /// A link that is seen and cannot be touched.
+    #[error(
+        "link {link:?} has a visual and no collision, so planning would not see it; give it a collision, or list it in \
+         `robot.shapeless`"
+    )]
+    VisualOnly {
+        /// The link.
+        link: String,
+    },
+    /// A link that is not there.
+    #[error("there is no link {name:?}")]
+    NoSuchLink {
+        /// Its name.
+        name: String,
+    },
     /// A number is not finite.
     #[error("{element}: {quantity} is {value}, not a finite number")]
     NotFinite {

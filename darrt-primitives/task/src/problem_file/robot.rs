@@ -42,6 +42,9 @@ pub struct Robot {
     /// it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub urdf: Option<PathBuf>,
+    /// Links of the description that have a visual and may lack a collision shape: the robot is planned as if they were air.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shapeless: Vec<String>,
     /// The manipulating arm.
     #[serde(default)]
     pub arm: ArmSide,

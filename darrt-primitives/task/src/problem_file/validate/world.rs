@@ -153,6 +153,15 @@ pub(super) fn check_shape(shape: &ShapeSpec, key: &str) -> Result<(), Located> {
             range("height", *height, *height < rim.height() - ROUNDING, bound)
         }
         ShapeSpec::Hull { points } => length(&format!("{key}.points"), points.len(), 4, MOST_POINTS),
+        // A path joined to a folder keeps one slash.
+        ShapeSpec::Mesh { file, .. } if file.to_string_lossy().contains(":/") => {
+            let text = format!(
+                "is `{}`, but packages and other addresses are not known here; give the path of the file, relative to the \
+                 folder of the problem file",
+                file.display()
+            );
+            Err(Flaw::Inconsistent(text).at(format!("{key}.file")))
+        }
         _ => Ok(()),
     }
 }

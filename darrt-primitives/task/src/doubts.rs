@@ -1,0 +1,252 @@
+//! Will a problem have a plan? Before the search its own actions are tried where they will be needed: at the start and at the
+//! goals. What can be said for certain is an error; what is only likely is a doubt, and the search goes on.
+
+use std::collections::BTreeMap;
+
+use darrt_core::goal::Goal as _;
+use darrt_core::observe::accounts::Bucket;
+use darrt_core::primitive::{Infeasible, Instances, PrimitiveId};
+use darrt_core::random::{Purpose, stream};
+use darrt_core::state::ObjectId;
+use darrt_geom::Body;
+use darrt_geom::scene::Scene;
+use darrt_primitives::action::pick::{lies_flat, pick};
+use darrt_primitives::action::place::place;
+use darrt_primitives::action::push::push;
+use darrt_primitives::contract::{Contract, HandUse};
+use darrt_primitives::goal::{Grip, TabletopGoal};
+use darrt_primitives::manipulator::Manipulator;
+use darrt_primitives::mode::Held;
+use darrt_primitives::primitive::{PICK, PLACE, PUSH};
+use darrt_primitives::tabletop::{Tabletop, TabletopState};
+use nalgebra::Translation3;
+use rand::{Rng, RngExt as _};
+
+use crate::goal_means::Means;
+use crate::planning_error::PlanningError;
+use crate::problem_file::{Object, ProblemFile, ShapeSpec};
+
+/// How often an action is tried before it is doubted.
+const TRIES: u64 = 32;
+/// What is named as being in the way at most.
+const REASONS: usize = 3;
+/// Objects that may be moved out of the way are lifted so far, metres.
+const ASIDE_M: f64 = 100.0;
+/// A mesh that is wider is doubted, metres.
+const WIDEST_M: f64 = 20.0;
+/// Farther than any surface reaches, metres: towards a place so far away an object is pushed to the edge.
+const AWAY_M: f64 = 20.0;
+
+/// A problem whose actions are tried.
+pub(crate) struct Outlook<'a, M: Manipulator> {
+    pub(crate) problem: &'a ProblemFile,
+    pub(crate) allowed: &'a [(PrimitiveId, Contract)],
+    pub(crate) m: &'a Tabletop<M>,
+    pub(crate) start: &'a TabletopState<M>,
+    pub(crate) goal: &'a TabletopGoal<M::Joints>,
+    pub(crate) scene: &'a Scene,
+}
+
+impl<'a, M: Manipulator> Outlook<'a, M> {
+    /// The objects that nothing can move.
+    pub(crate) fn immovable(&self) -> Vec<ObjectId> {
+        let is_fixed = |(id, object)| {
+            let means = self.means(object);
+            (means.pick.is_err() && means.push.is_err()).then_some(id)
+        };
+        self.objects().filter_map(is_fixed).collect()
+    }
+
+    /// Checks that no object which must move lies flat, with grasps only by a rim that must overhang, and without a push.
+    ///
+    /// # Errors
+    /// [`PlanningError::GoalWithoutMeans`] with the object and what would help.
+    pub(crate) fn check_rims(&self) -> Result<(), PlanningError> {
+        for (id, object) in self.objects().filter(|(id, _)| self.must_move(*id)) {
+            let Err(no_push) = self.means(object).push else { continue };
+            if self.is_ours(PICK, |contract| contract.hand == HandUse::Takes) && lies_flat(self.m, self.start, id) {
+                let why = format!(
+                    "it is only taken by its rim, where it stands on `{}` its rim does not overhang an edge, and it is not \
+                     pushed to one: {no_push}",
+                    object.on
+                );
+                return Err(PlanningError::GoalWithoutMeans { object: object.name.clone(), why });
+            }
+        }
+        Ok(())
+    }
+
+    /// What makes a plan unlikely, in words; empty for most problems.
+    pub(crate) fn doubts(&self) -> Vec<String> {
+        let wanted = self.objects().filter(|(id, _)| self.must_move(*id));
+        let actions = wanted.flat_map(|(id, object)| [self.of_leaving(id, object), self.of_arriving(id, object)]);
+        self.of_size().into_iter().chain(actions.flatten()).collect()
+    }
+
+    /// Meshes so large that they are probably not in metres.
+    fn of_size(&self) -> Vec<String> {
+        let bodies = self.scene.bodies().iter().map(|fixed| &fixed.body);
+        let obstacles = self.problem.obstacles.iter().map(|obstacle| &obstacle.shape).zip(bodies);
+        let bodies = self.m.movables().iter().map(|movable| &movable.body);
+        let objects = self.problem.objects.iter().map(|object| &object.shape).zip(bodies);
+        let wide = |(shape, body): (&ShapeSpec, &Body)| {
+            let ShapeSpec::Mesh { scale, .. } = shape else { return None };
+            let (low, high) = body.local_aabb();
+            let width_m = (high - low).max();
+            let smaller = scale / 1000.0;
+            (width_m > WIDEST_M).then(|| {
+                let name = &body.name;
+                format!(
+                    "`{name}` is {width_m:.0} m wide: is its mesh in millimetres? Then it needs `scale = {smaller}`"
+                )
+            })
+        };
+        obstacles.chain(objects).filter_map(wide).collect()
+    }
+
+    fn objects(&self) -> impl Iterator<Item = (ObjectId, &'a Object)> + use<'a, M> {
+        self.problem.objects.iter().enumerate().map(|(index, object)| (ObjectId::new(index), object))
+    }
+
+    fn means(&self, object: &'a Object) -> Means<'a> {
+        Means::new(self.problem, object, self.allowed, self.m.manipulator())
+    }
+
+    /// Does only this primitive of ours do that? Of a user's own nothing is known.
+    fn is_ours(&self, id: PrimitiveId, does: impl Fn(&Contract) -> bool) -> bool {
+        self.allowed.iter().all(|(other, contract)| *other == id || !does(contract))
+    }
+
+    fn must_move(&self, id: ObjectId) -> bool {
+        let mut groups = self.goal.groups().iter().filter(|group| group.iter().any(|goal| goal.object == id));
+        groups.any(|group| !group.iter().any(|goal| goal.is_met(self.start)))
+    }
+
+    /// The start, with the objects that may be moved out of the way of `id` out of its way.
+    fn alone(&self, id: ObjectId) -> TabletopState<M> {
+        let mut state = self.start.clone();
+        let immovable = self.immovable();
+        for (index, pose) in state.objects.iter_mut().enumerate() {
+            let other = ObjectId::new(index);
+            if other != id && !immovable.contains(&other) {
+                *pose = Translation3::new(0.0, 0.0, ASIDE_M) * *pose;
+            }
+        }
+        state
+    }
+
+    /// Can the object leave where it stands?
+    fn of_leaving(&self, id: ObjectId, object: &'a Object) -> Option<String> {
+        let means = self.means(object);
+        let is_known =
+            self.is_ours(PICK, |contract| contract.hand == HandUse::Takes) && self.is_ours(PUSH, Contract::slides);
+        let state = self.alone(id);
+        let pose = *state.object(id)?;
+        if !is_known {
+            return None;
+        }
+        let name = &object.name;
+        let is_flat = means.pick.is_ok() && lies_flat(self.m, &state, id);
+        let no_pick = match &means.pick {
+            Ok(()) if is_flat => "it is only taken by its rim, which lies flat".to_owned(),
+            Ok(()) => tried("pick", |rng| pick(self.m, &state, id, rng))?,
+            Err(why) => why.clone(),
+        };
+        let mut flat_ends = 0;
+        let towards = |rng: &mut dyn Rng| {
+            let (y, x) = rng.random_range(-std::f64::consts::PI..std::f64::consts::PI).sin_cos();
+            Translation3::new(AWAY_M * x, AWAY_M * y, 0.0) * pose
+        };
+        let no_push = match &means.push {
+            Ok(()) => tried("push", |rng| {
+                let way = push(self.m, &state, id, &towards(rng), rng)?;
+                let is_still_flat = is_flat
+                    && way.last().is_some_and(|last| lies_flat(self.m, &last.motion.at(self.m, 1.0, &state), id));
+                if is_still_flat && !self.may_be_pushed_there(object) {
+                    flat_ends += 1;
+                    return Err(Infeasible::NoProgress);
+                }
+                Ok(way)
+            })?,
+            Err(why) => why.clone(),
+        };
+        Some(match flat_ends {
+            0 => format!("`{name}` can hardly leave where it stands: {no_pick}; {no_push}"),
+            _ => format!(
+                "the rim of `{name}` can hardly be brought over an edge: {no_pick}, and {flat_ends} of {TRIES} pushes towards \
+                 the edges end before: {no_push}"
+            ),
+        })
+    }
+
+    /// Has the object a goal on what it stands on, to which a push may lead?
+    fn may_be_pushed_there(&self, object: &'a Object) -> bool {
+        let across = self.problem.surfaces_across(object);
+        let goals = self.problem.goal.objects.iter().filter(|goal| goal.object == object.name);
+        let is_near = |on: &str| on == object.on || across.iter().any(|name| *name == on);
+        let mut goals = goals.map(|goal| goal.on.as_deref());
+        self.means(object).push.is_ok() && goals.any(|on| on.is_none_or(is_near))
+    }
+
+    /// Can the object be set down at its goal?
+    fn of_arriving(&self, id: ObjectId, object: &'a Object) -> Option<String> {
+        let means = self.means(object);
+        let is_known = self.is_ours(PLACE, |contract| contract.hand == HandUse::LetsGo);
+        let groups = self.goal.groups().iter();
+        let needs_hand = groups.flatten().filter(|goal| goal.object == id).all(|goal| goal.grip == Grip::Released);
+        if !is_known || !needs_hand || means.place.is_err() || self.may_be_pushed_there(object) {
+            return None;
+        }
+        let aside = self.alone(id);
+        let no_place = tried("set it down", |rng| {
+            let target = self.goal.sample(self.m, rng).ok_or(Infeasible::OffSupport)?;
+            let target = *target.object(id).ok_or(Infeasible::OffSupport)?;
+            let held = self.held(&aside, id, rng).ok_or(Infeasible::NoHold)?;
+            place(self.m, &held, &target, rng)
+        })?;
+        Some(format!("`{}` can hardly be set down at its goal: {no_place}", object.name))
+    }
+
+    /// The object in the hand, by one of its grasps.
+    fn held(&self, from: &TabletopState<M>, id: ObjectId, rng: &mut dyn Rng) -> Option<TabletopState<M>> {
+        let (m, movable) = (self.m, self.m.movable(id)?);
+        let family = movable.grasps.get(rng.random_range(0..movable.grasps.len()))?;
+        let grasp = family.sample(rng);
+        let hold = m.hold(movable, &**family, &grasp).ok()?;
+        let tool_from_object = grasp.object_from_tool.inverse();
+        let held = Held { object: id, tool_from_object, max_tilt_rad: hold.max_tilt_rad };
+        let mut state = from.clone();
+        state.mode = state.mode.engaged_with(id)?.attached(held, grasp.closed_gap_m)?;
+        *state.objects.get_mut(id.index())? = m.manipulator().world_from_tool(&state.robot) * tool_from_object;
+        Some(state)
+    }
+}
+
+/// Tries until it succeeds; what was in the way if it never does.
+fn tried<M: Manipulator>(
+    what: &str,
+    mut action: impl FnMut(&mut dyn Rng) -> Result<Instances<Tabletop<M>>, Infeasible>,
+) -> Option<String> {
+    let mut reasons = BTreeMap::<String, u64>::new();
+    for i in 0..TRIES {
+        match action(&mut stream(0, 0, i, Purpose::Attempt)) {
+            Ok(_) => return None,
+            Err(why) => *reasons.entry(in_words(&why)).or_default() += 1,
+        }
+    }
+    let mut reasons: Vec<_> = reasons.into_iter().collect();
+    reasons.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let reasons: Vec<_> =
+        reasons.into_iter().take(REASONS).map(|(reason, count)| format!("{reason} ({count})")).collect();
+    Some(format!("all of {TRIES} tries to {what} fail: {}", reasons.join(", ")))
+}
+
+fn in_words(why: &Infeasible) -> String {
+    match why {
+        Infeasible::Blocked(blame) => format!("{} meets {}", blame.first, blame.second),
+        Infeasible::Unreachable | Infeasible::Limits => "out of the arm's reach".to_owned(),
+        Infeasible::NoProgress => "it ends before".to_owned(),
+        Infeasible::OffSupport => "too near to an edge, or beside what it may stand on".to_owned(),
+        other => Bucket::from(other).heading().to_owned(),
+    }
+}
