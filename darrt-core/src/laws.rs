@@ -12,6 +12,8 @@
 //! | [`Goal`](crate::goal::Goal) | [`check_goal`] | [`goal`] |
 //! | [`Sampler`](crate::sample::Sampler) | [`check_sampler`], [`check_sampler_covers`] | [`sampler`] |
 //! | [`Verifier`](crate::verify::Verifier) | [`check_verifier`] | [`verifier`] |
+//! | [`Reroute`](crate::reroute::Reroute) | [`check_reroute`] | [`reroute`] |
+//! | [`ExecutionCost`](crate::cost::ExecutionCost) | [`check_cost`] | [`cost`] |
 //! | all of them together | [`check_planner`], [`check_accounts`], [`check_cancel`] | [`planner`] |
 //! | whatever you brought | [`check_everything`], [`check_thoroughly`] | all |
 //! | every call | | [`watch`] |
@@ -36,6 +38,7 @@
 
 use std::fmt::{self, Debug};
 
+pub mod cost;
 pub mod distance;
 pub mod domain;
 pub mod everything;
@@ -46,12 +49,14 @@ pub mod nearest;
 pub mod partial;
 pub mod planner;
 pub mod primitive;
+pub mod reroute;
 pub mod sampler;
 pub mod space;
 pub mod validity;
 pub mod verifier;
 pub mod watch;
 
+pub use cost::check_cost;
 pub use distance::{DistanceClaims, check_distance, check_lower_bound, check_metric, check_not_above};
 pub use domain::check_domain;
 pub use everything::{Effort, Report, Subjects, check_everything, check_thoroughly};
@@ -61,6 +66,7 @@ pub use nearest::check_nearest;
 pub use partial::check_partial;
 pub use planner::{check_accounts, check_cancel, check_planner};
 pub use primitive::{PrimitiveClaims, Tried, check_contacts, check_primitive, try_primitive};
+pub use reroute::check_reroute;
 pub use sampler::{check_sampler, check_sampler_covers};
 pub use space::{SpaceClaims, check_component_space, check_covering, check_space_covers};
 pub use validity::{ValidityClaims, check_against_oracle, check_by_oracle, check_enlarged, check_validity};
@@ -170,7 +176,7 @@ pub fn name_of(law: &'static str) -> &'static str {
 
 /// Every law that the kit knows.
 pub fn all() -> impl Iterator<Item = &'static str> {
-    let groups: [&[&str]; 13] = [
+    let groups: [&[&str]; 15] = [
         watch::LAWS,
         space::LAWS,
         domain::LAWS,
@@ -184,6 +190,8 @@ pub fn all() -> impl Iterator<Item = &'static str> {
         sampler::LAWS,
         planner::LAWS,
         verifier::LAWS,
+        reroute::LAWS,
+        cost::LAWS,
     ];
     groups.into_iter().flatten().copied()
 }

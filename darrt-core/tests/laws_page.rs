@@ -10,7 +10,7 @@ const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/laws.md");
 
 #[test]
 fn the_page_lists_every_law_with_what_it_catches() {
-    let groups: [(&str, &[&'static str]); 13] = [
+    let groups: [(&str, &[&'static str]); 15] = [
         ("Every call", laws::watch::LAWS),
         ("Component spaces: `check_component_space`, `check_space_covers`, `check_covering`", laws::space::LAWS),
         ("Domains: `check_domain`", laws::domain::LAWS),
@@ -26,6 +26,8 @@ fn the_page_lists_every_law_with_what_it_catches() {
         ("Goals: `check_goal`", laws::goal::LAWS),
         ("Samplers: `check_sampler`, `check_sampler_covers`", laws::sampler::LAWS),
         ("Verifiers: `check_verifier`", laws::verifier::LAWS),
+        ("Ways around: `check_reroute`", laws::reroute::LAWS),
+        ("Costs: `check_cost`", laws::cost::LAWS),
         ("The planner: `check_planner`, `check_accounts`, `check_cancel`", laws::planner::LAWS),
     ];
     let listed: usize = groups.iter().map(|(_, laws)| laws.len()).sum();

@@ -2,12 +2,12 @@
 
 use crate::domain::Domain;
 use crate::space::ComponentSpace;
-use crate::state::{ComponentId, ObjectId, State};
+use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 
 use super::feed::{cornered, rng_of};
 use super::space::{SpaceClaims, check_component_space};
 use super::watch::{entering, watched};
-use super::{Broken, alike, at_most, equal, measure};
+use super::{Broken, alike, at_most, ensure, equal, measure};
 
 /// As many objects in every state as in the domain.
 pub const COUNT: &str = "domain.count: a state has one configuration per object of the domain";
@@ -23,7 +23,12 @@ pub const REACH_AT_LEAST: &str =
 /// Hop is a measure.
 pub const HOP: &str = "domain.hop: hop is finite and not negative";
 /// What goes on from where it was made for.
-pub const MAY_GO_ON: &str = "domain.may-go-on: a motion may begin in the mode that it was made for";
+pub const MAY_GO_ON: &str = "domain.may-go-on: a motion may begin in the mode that it was made for, and in no other in which other objects are carried";
+/// What is carried.
+pub const CARRIED: &str = "domain.carried: what is carried are objects of the domain; whoever moves the robot moves them as well, and only whoever names one takes it up or lets it go";
+/// The domain without the robot.
+pub const WITHOUT_ROBOT: &str =
+    "domain.without-robot: for a robot that passes through everything, spaces, names and distances are the same";
 /// Names tell the components apart.
 pub const NAMES: &str = "domain.names: every component has a name of its own";
 
@@ -36,8 +41,21 @@ pub const HOP_TRIANGLE: &str =
     "domain.hop-triangle: a hop is at most as long as two hops over a third object, and the way around that";
 
 /// The laws of this file.
-pub const LAWS: &[&str] =
-    &[COUNT, REACH, REACH_FROM, POINT, REACH_AT_LEAST, HOP, MAY_GO_ON, NAMES, PURE, HOP_SYMMETRIC, HOP_TRIANGLE];
+pub const LAWS: &[&str] = &[
+    COUNT,
+    REACH,
+    REACH_FROM,
+    POINT,
+    REACH_AT_LEAST,
+    HOP,
+    MAY_GO_ON,
+    CARRIED,
+    WITHOUT_ROBOT,
+    NAMES,
+    PURE,
+    HOP_SYMMETRIC,
+    HOP_TRIANGLE,
+];
 
 /// The laws of a domain and of all its component spaces, for three states, two parameters in `[0, 1]` and
 /// a seed.
@@ -56,8 +74,9 @@ pub fn check_domain<D: Domain>(
     let check = || {
         for state in states {
             equal(COUNT, &state.objects.len(), &m.objects().len())?;
-            equal(MAY_GO_ON, &m.may_go_on(&state.mode, &state.mode), &true)?;
+            modes(m, &state.mode, &state.mode)?;
         }
+        modes(m, &a.mode, &b.mode)?;
         let before = answers(m, a, b);
         let robot = check_component_space(m.robot(), claims, [&a.robot, &b.robot, &c.robot], ts, seed);
         robot.map_err(|broken| broken.of(m.component_name(ComponentId::Robot)))?;
@@ -76,23 +95,33 @@ pub fn check_domain<D: Domain>(
         corner.map_err(|broken| broken.of("in a corner"))?;
         for ((call, was), (_, is)) in before.iter().zip(answers(m, a, b)) {
             alike(PURE, &is, was).map_err(|broken| broken.of(call))?;
+            ensure(PURE, !is.contains(AGAIN), || is.clone(), "the same").map_err(|broken| broken.of(call))?;
         }
-        Ok(())
+        without_robot(m, a, &before)
     };
     watched(&about, check).map_err(|broken| broken.replayed_by(about))
 }
+
+/// What stands between two answers to one question.
+const AGAIN: &str = ", asked again ";
 
 /// Answers to questions about two states, to be asked again later.
 pub(super) fn answers<D: Domain>(m: &D, a: &State<D>, b: &State<D>) -> Vec<(&'static str, String)> {
     let mut all = Vec::new();
     let mut say = |call: &'static str, answer: &dyn Fn() -> String| {
         entering(call);
-        all.push((call, answer()));
+        // Twice: what changes with every question may be back where it was when all has been asked.
+        let (first, second) = (answer(), answer());
+        let said = if first == second { first } else { format!("{first}{AGAIN}{second}") };
+        all.push((call, said));
     };
     say("objects", &|| format!("{:?}", m.objects().len()));
     say("working_point", &|| format!("{:?}", m.working_point(&a.robot)));
     say("component_name", &|| m.component_name(ComponentId::Robot).into_owned());
-    say("may_go_on", &|| format!("{:?}", [m.may_go_on(&a.mode, &b.mode), m.may_go_on(&b.mode, &a.mode)]));
+    for (mode, next) in [(&a.mode, &b.mode), (&b.mode, &a.mode)] {
+        say("may_go_on", &|| format!("{:?}", m.may_go_on(mode, next)));
+        say("carried", &|| format!("{:?}", m.carried(mode)));
+    }
     for (i, (p, q)) in a.objects.iter().zip(&b.objects).enumerate() {
         let id = ObjectId::new(i);
         say("component_name", &|| m.component_name(ComponentId::Object(id)).into_owned());
@@ -105,6 +134,41 @@ pub(super) fn answers<D: Domain>(m: &D, a: &State<D>, b: &State<D>) -> Vec<(&'st
         }
     }
     all
+}
+
+/// What two modes say of each other.
+pub(super) fn modes<D: Domain>(m: &D, mode: &D::Mode, next: &D::Mode) -> Result<(), Broken> {
+    entering("carried");
+    let (here, there) = (m.carried(mode), m.carried(next));
+    let objects =
+        (0..m.objects().len()).fold(ComponentSet::EMPTY, |set, i| set.with(ComponentId::Object(ObjectId::new(i))));
+    for (mode, carried) in [(mode, here), (next, there)] {
+        let text = || format!("{carried:?} in mode {mode:?}");
+        ensure(CARRIED, carried.is_subset_of(objects), text, "objects of the domain, and not the robot")?;
+    }
+    entering("may_go_on");
+    let may = m.may_go_on(mode, next);
+    ensure(MAY_GO_ON, may || mode != next, || format!("not in mode {mode:?}"), "in the mode that it was made for")?;
+    let text = || format!("in mode {mode:?} with {here:?}, what was made for {next:?} with {there:?}");
+    ensure(MAY_GO_ON, !may || here == there, text, "the same carried in both")
+}
+
+/// The domain without its robot gives the same answers, and draws the same configurations.
+fn without_robot<D: Domain>(m: &D, a: &State<D>, said: &[(&'static str, String)]) -> Result<(), Broken> {
+    entering("without_robot");
+    let Some(bare) = m.without_robot() else { return Ok(()) };
+    equal(WITHOUT_ROBOT, &bare.objects().len(), &m.objects().len()).map_err(|broken| broken.of("objects"))?;
+    for ((call, is), (_, was)) in answers(&bare, a, a).iter().zip(answers(m, a, a)) {
+        alike(WITHOUT_ROBOT, is, &was).map_err(|broken| broken.of(call))?;
+    }
+    let rng = || rng_of(&said);
+    let draw = |m: &D| (m.robot().sample(&mut rng()), m.robot().dimension(), m.robot().groups());
+    alike(WITHOUT_ROBOT, &draw(&bare), &draw(m)).map_err(|broken| broken.of("samples of the robot"))?;
+    for (there, here) in bare.objects().iter().zip(m.objects()) {
+        let draw = |space: &D::Object| (space.sample(&mut rng()), space.dimension(), space.groups());
+        alike(WITHOUT_ROBOT, &draw(there), &draw(here)).map_err(|broken| broken.of("samples of an object"))?;
+    }
+    Ok(())
 }
 
 /// Hops between three places, each of another object if there are as many.

@@ -222,6 +222,32 @@ pub(super) fn on_face<D: Domain>(
     at
 }
 
+/// `state` with one number of one component so many metres beyond the face of its space.
+pub(super) fn beyond_face<D: Domain>(
+    m: &D,
+    state: &State<D>,
+    component: ComponentId,
+    coordinate: usize,
+    is_upper: bool,
+    metres: f64,
+) -> State<D> {
+    fn push<S: ComponentSpace>(space: &S, q: &S::Config, coordinate: usize, by: f64) -> S::Config {
+        let value = values(space, q).get(coordinate).copied().unwrap_or(0.0);
+        with(space, q, coordinate, value + by)
+    }
+    let by = if is_upper { metres } else { -metres };
+    let mut at = on_face(m, state, component, coordinate, is_upper);
+    match component {
+        ComponentId::Robot => at.robot = push(m.robot(), &at.robot, coordinate, by),
+        ComponentId::Object(id) => {
+            if let (Some(space), Some(slot)) = (m.objects().get(id.index()), at.objects.get_mut(id.index())) {
+                *slot = push(space, slot, coordinate, by);
+            }
+        }
+    }
+    at
+}
+
 /// How many numbers one component has.
 pub(super) fn count_of<D: Domain>(m: &D, state: &State<D>, component: ComponentId) -> usize {
     match component {

@@ -35,7 +35,7 @@ pub const FINITE: &str = "motion.finite: every state of a motion is made of numb
 /// No jumps.
 pub const CONTINUOUS: &str = "motion.continuous: in a billionth of a thousandth of a motion nothing travels farther than a micrometre, however long it is";
 /// Knots.
-pub const KNOTS: &str = "motion.knots: knots ascend and lie in [0, 1]";
+pub const KNOTS: &str = "motion.knots: knots ascend and lie in [0, 1], and between two of them the robot follows the interpolation of its space";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[LENGTH, START, PURE, CLAMPED, TRAVEL, MODE, FRAME, NAMED, FINITE, CONTINUOUS, KNOTS];

@@ -63,7 +63,9 @@ pub const AT_HAND: &str = "primitive.at-hand: the mode changes only where the ro
 pub const REVERSIBLE: &str =
     "primitive.reversible: what claims that it can be run backwards need not go anywhere else to bring its object back";
 /// Feasible now and then.
-pub const FEASIBLE: &str = "primitive.feasible: of a thousand calls in which it is useful one at least finds a way";
+pub const FEASIBLE: &str = "primitive.feasible: of a thousand calls in which it is useful one at least finds a way, whatever is still to be done";
+/// Free now and then.
+pub const FREE: &str = "primitive.free: of a hundred ways that it finds one at least is free to its end";
 /// Names.
 pub const NAME: &str = "primitive.name: a primitive has one name, which does not change";
 
@@ -74,6 +76,7 @@ pub const LAWS: &[&str] = &[
     AT_HAND,
     REVERSIBLE,
     FEASIBLE,
+    FREE,
     NAME,
     PANICS,
     ENDS,

@@ -30,7 +30,8 @@ pub const FRACTION: &str =
 pub const ONE_BY_ONE: &str =
     "validity.one-by-one: check accepts every state of the free prefix, however densely it is looked at";
 /// Truncation.
-pub const CUT: &str = "validity.cut: a motion cut within its free prefix is free altogether";
+pub const CUT: &str =
+    "validity.cut: a motion cut within its free prefix is free altogether, and no piece of it that ends behind is";
 /// Blame is real.
 pub const BLAME_REAL: &str = "validity.blame-real: just behind the free prefix check rejects a state";
 /// Blame names.
@@ -59,7 +60,7 @@ pub const BLAME_KIND: &str =
 pub const WITHOUT_ROBOT: &str = "validity.without-robot: without the robot the same objects are in the way wherever it is, and none that are not with it";
 /// Held objects.
 pub const HELD: &str =
-    "validity.held: where an object at rest would be in something fixed, it is not free in the hand either";
+    "validity.held: where an object at rest would be in something else, it is not free in the hand either";
 /// The user's oracle.
 pub const LAX: &str = "validity.lax: check never calls free what the user's oracle calls blocked";
 /// The user's oracle, the other way round.
@@ -129,6 +130,8 @@ pub fn check_validity<D: Domain>(
         .map_err(|broken| broken.of(format_args!("motion {:?}", instance.primitive)).replayed_by(about))
 }
 
+/// Length of the shortest pieces of motions that are looked at, metres.
+const PIECE_M: f64 = 0.005;
 /// At most so many metres lie between two looks at a free prefix, as long as it is not longer than [`MOST_LOOKS`] of them.
 const LOOK_M: f64 = 0.01;
 const MOST_LOOKS: f64 = 512.0;
@@ -294,6 +297,29 @@ impl<D: Domain> Trial<'_, D> {
                 return Err(Broken::new(CUT, left, format!("free up to {:?}", free.fraction)).at(until));
             }
         }
+        if free.blame.is_some() { self.pieces(free) } else { Ok(()) }
+    }
+
+    /// Pieces of the motion, long and short, that end in the first state behind the prefix that is not valid.
+    fn pieces(&self, free: &FreePrefix) -> Result<(), Broken> {
+        let window = self.parameter_of(self.claims.tight_m);
+        let behind = (0..=64_u32).map(|i| (free.fraction + window * f64::from(i) / 64.0).min(1.0));
+        let Some((until, blame)) = behind.filter(|t| *t > 0.0).find_map(|t| self.check(t).err().map(|b| (t, b))) else {
+            return Ok(());
+        };
+        for metres in [f64::INFINITY, 0.1, PIECE_M] {
+            let since = (until - self.parameter_of(metres)).max(0.0);
+            let from = self.instance.at(self.m, since, self.from);
+            // Where it begins, nothing is in the way yet.
+            if since > 0.0 && self.check(since).is_err() {
+                continue;
+            }
+            let piece = piece(self.instance, since, until);
+            entering("free_prefix");
+            let found = self.validity.free_prefix(self.m, &piece, &from);
+            let text = || format!("free from {since:?} to {until:?}, where check says {blame}");
+            ensure(CUT, found.blame.is_some(), text, "not free")?;
+        }
         Ok(())
     }
 }
@@ -310,9 +336,14 @@ fn readable(blame: &Blame) -> Result<(), Broken> {
 
 /// `instance` run on `[0, until]` only.
 pub fn truncated<D: Domain>(instance: &Arc<Instance<D>>, until: f64) -> Instance<D> {
+    piece(instance, 0.0, until)
+}
+
+/// `instance` run on `[since, until]` only.
+fn piece<D: Domain>(instance: &Arc<Instance<D>>, since: f64, until: f64) -> Instance<D> {
     Instance {
         primitive: instance.primitive,
-        motion: Box::new(Cut { instance: Arc::clone(instance), until }),
+        motion: Box::new(Cut { instance: Arc::clone(instance), since, until }),
         contacts: instance.contacts.clone(),
         moves: instance.moves,
         object: instance.object,
@@ -323,22 +354,29 @@ pub fn truncated<D: Domain>(instance: &Arc<Instance<D>>, until: f64) -> Instance
 /// A motion cut short.
 struct Cut<D: Domain> {
     instance: Arc<Instance<D>>,
+    since: f64,
     until: f64,
 }
 
 impl<D: Domain> Motion<D> for Cut<D> {
     fn length(&self) -> f64 {
-        self.instance.motion.length() * self.until
+        self.instance.motion.length() * (self.until - self.since)
     }
 
     fn at_into(&self, m: &D, t: f64, out: &mut State<D>) {
-        self.instance.motion.at_into(m, t.clamp(0.0, 1.0) * self.until, out);
+        let t = t.clamp(0.0, 1.0);
+        let at = if t >= 1.0 { self.until } else { self.since + t * (self.until - self.since) };
+        self.instance.motion.at_into(m, at, out);
     }
 }
 
 impl<D: Domain> fmt::Debug for Cut<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Cut").field("instance", &self.instance).field("until", &self.until).finish()
+        f.debug_struct("Cut")
+            .field("instance", &self.instance)
+            .field("since", &self.since)
+            .field("until", &self.until)
+            .finish()
     }
 }
 

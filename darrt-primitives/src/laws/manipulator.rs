@@ -89,6 +89,9 @@ pub const TRAVEL_TIGHT: &str =
 pub const STRENGTH: &str =
     "manipulator.strength: grip, payload and push force are positive, and the pads have a length";
 
+/// Durations.
+pub const DURATION: &str = "manipulator.duration: duration_s is finite, 0 from a configuration to itself, more for every joint and coordinate that moves, and not less with something in the hand";
+
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
     NAN,
@@ -96,6 +99,7 @@ pub const LAWS: &[&str] = &[
     PAIRS,
     TRAVEL_TIGHT,
     STRENGTH,
+    DURATION,
     COUNTS,
     LIMITS,
     LINKS,

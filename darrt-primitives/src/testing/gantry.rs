@@ -48,6 +48,8 @@ pub struct Gantry {
     pub travel: fn(&Configuration, &Configuration, f64) -> f64,
     /// [`Manipulator::link_travel_m`].
     pub link_travel: fn(&Configuration, &Configuration, f64, &mut [f64]) -> f64,
+    /// [`Manipulator::duration_s`].
+    pub duration: fn(&Configuration, &Configuration, bool) -> f64,
     /// [`Manipulator::limits`].
     pub limits: Vec<JointLimit>,
     /// [`Manipulator::joint_weights_m`].
@@ -123,6 +125,7 @@ impl Gantry {
             poses,
             travel: motion::travel,
             link_travel,
+            duration: |a, b, _| 2.0 * motion::travel(a, b, 0.0),
             limits: motion::LIMITS.to_vec(),
             weights_m: vec![1.0, 1.0, 1.0, 1.0, 0.2, 0.2, 0.2],
             self_pairs: vec![(0, 2), (0, 3), (0, 4)],
@@ -203,6 +206,10 @@ impl Manipulator for Gantry {
 
     fn link_travel_m(&self, a: &Configuration, b: &Configuration, held_reach_m: f64, out: &mut [f64]) -> f64 {
         (self.link_travel)(a, b, held_reach_m, out)
+    }
+
+    fn duration_s(&self, a: &Configuration, b: &Configuration, is_loaded: bool) -> f64 {
+        (self.duration)(a, b, is_loaded)
     }
 
     fn joint_weights_m(&self) -> &[f64] {

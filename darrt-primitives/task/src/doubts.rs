@@ -160,8 +160,8 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         let no_push = match &means.push {
             Ok(()) => tried("push", |rng| {
                 let way = push(self.m, &state, id, &towards(rng), rng)?;
-                let is_still_flat = is_flat
-                    && way.last().is_some_and(|last| lies_flat(self.m, &last.motion.at(self.m, 1.0, &state), id));
+                let is_still_flat =
+                    is_flat && way.last().is_some_and(|last| lies_flat(self.m, &last.at(self.m, 1.0, &state), id));
                 if is_still_flat && !self.may_be_pushed_there(object) {
                     flat_ends += 1;
                     return Err(Infeasible::NoProgress);

@@ -14,6 +14,11 @@ use crate::state::{ComponentId, ObjectId, State};
 /// How many pairs of objects and targets decide whether objects near their targets are nearer.
 const PAIRS: usize = 16;
 
+/// In how many places the way of the robot is looked at closely, and how closely: single precision has no more digits.
+const FINE: u32 = 16;
+const FINE_SHARE: f64 = 1e-8;
+/// The first half of the robot's way is at least this part of all of it.
+const LEAST_SHARE: f64 = 0.01;
 /// Into how many steps the way of the robot is cut.
 const STEPS: u32 = 128;
 
@@ -80,9 +85,20 @@ impl<D: Domain> Trial<'_, D> {
                 .map_err(|broken| broken.of(self.m.component_name(ComponentId::Robot)))?;
             before = Some(metres);
         }
+        for step in 0..FINE {
+            let t = 0.1 + 0.8 * f64::from(step) / f64::from(FINE);
+            let [near, next] = [t, t + FINE_SHARE].map(|t| (self.d)(&at(t), &to));
+            let text = || format!("{near:?} m at {t:?} of the way, and {FINE_SHARE:?} of it farther on");
+            ensure(RESOLVES, near != next, text, "another distance: no threshold, steps or plateau")
+                .map_err(|broken| broken.of(self.m.component_name(ComponentId::Robot)))?;
+        }
         let [whole, half, rest] = [0.0, 0.5, 0.9].map(|t| (self.d)(&at(t), &to));
         let text = || format!("{whole:?}, {half:?} and {rest:?} m at 0, 0.5 and 0.9 of the way");
         ensure(RESOLVES, rest < half && half < whole, text, "less and less")
+            .map_err(|broken| broken.of(self.m.component_name(ComponentId::Robot)))?;
+        // The first half of the way counts as well: else all that is far is equally far.
+        let text = || format!("{whole:?} m, {half:?} m at half of the way");
+        ensure(RESOLVES, whole - half >= LEAST_SHARE * whole, text, "clearly less at half of the way")
             .map_err(|broken| broken.of(self.m.component_name(ComponentId::Robot)))
     }
 

@@ -15,6 +15,7 @@ use crate::state::{ComponentId, ObjectId};
 
 mod parts;
 mod primitives;
+mod ways;
 mod whole;
 
 /// What a case looked at; laws that hold because nothing happened are no proof, so these are counted.
@@ -23,7 +24,13 @@ pub(super) struct Tally {
     pub(super) tried: AtomicU64,
     pub(super) hit: AtomicU64,
     pub(super) reached: AtomicU64,
+    pub(super) free: AtomicU64,
+    /// Useful, and found a way, by what is still to be done.
+    pub(super) kinds: [[AtomicU64; 2]; KINDS],
 }
+
+/// What may still be to be done: something for the robot, for an object; and whether the mode is still that of the start.
+pub(super) const KINDS: usize = 8;
 
 impl Tally {
     pub(super) fn count(which: &AtomicU64) {
@@ -77,6 +84,7 @@ pub(super) fn all<D: Domain>(world: &Arc<World<D>>, report: &mut Report) {
     let mut plans = parts::plans(world);
     plans.extend(primitives::plans(world));
     plans.extend(whole::plans(world));
+    plans.extend(ways::plans(world));
     for plan in plans {
         let only = world.subjects.effort.only.as_ref();
         if only.is_none_or(|(subject, _)| *subject == plan.subject) {

@@ -10,6 +10,7 @@ use crate::laws::feed::{is_number, rng_of};
 use crate::laws::watch::entering;
 use crate::laws::{Broken, alike, at_most, ensure, equal, measure};
 use crate::motion::Motion;
+use crate::space::ComponentSpace;
 use crate::state::State;
 
 /// How near to the ends and to the knots one looks.
@@ -20,6 +21,8 @@ const STRETCHES: usize = 3;
 const INSTANT: f64 = 1e-12;
 /// Farther than this nothing travels in an instant, metres.
 const JUMP_M: f64 = 1e-6;
+/// How far off the way between two knots the robot may be, of its length.
+const STRAIGHT_SHARE: f64 = 1e-3;
 /// Knots looked at, of those of a motion.
 const KNOTS_SEEN: usize = 16;
 
@@ -62,6 +65,7 @@ impl<D: Domain> Trial<'_, '_, D> {
         let (start, end) = (self.at(0.0, self.from), self.at(1.0, self.from));
         ensure(FINITE, is_number(&start), || format!("{start:?}"), "numbers").map_err(|broken| broken.at(0.0))?;
         equal(START, &start, self.from).map_err(|broken| broken.at(0.0))?;
+        self.straight(&end)?;
         let looks = all(self.motion, self.from, ts, self.claims.looks);
         let states = self.along(&looks, &end)?;
         self.jumps(&looks, &states)?;
@@ -77,6 +81,28 @@ impl<D: Domain> Trial<'_, '_, D> {
         let knots = self.motion.knots();
         let holds = knots.iter().all(|t| (0.0..=1.0).contains(t)) && knots.is_sorted();
         ensure(KNOTS, holds, || format!("{knots:?}"), "ascending, in [0, 1]")
+    }
+
+    /// Between two knots the robot is on the way that its space interpolates.
+    fn straight(&self, end: &State<D>) -> Result<(), Broken> {
+        let (robot, knots) = (self.m.robot(), self.motion.knots());
+        for pair in knots.windows(2).take(KNOTS_SEEN) {
+            let [since, until] = [pair[0], pair[1]];
+            if until - since <= INSTANT {
+                continue;
+            }
+            let [a, b] = [since, until].map(|t| self.at(t, end).robot);
+            let whole = robot.distance(&a, &b);
+            for share in [0.2, 0.5, 0.7] {
+                let t = since + share * (until - since);
+                let q = self.at(t, end).robot;
+                let along = robot.interpolate(&a, &b, share);
+                let off = robot.distance(&q, &along);
+                let bound = self.claims.slack_m + STRAIGHT_SHARE * whole;
+                at_most(KNOTS, off, bound, 0.0).map_err(|broken| broken.at(t).of("off the way between two knots"))?;
+            }
+        }
+        Ok(())
     }
 
     /// From look to look.

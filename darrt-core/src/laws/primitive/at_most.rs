@@ -3,6 +3,8 @@
 
 use super::{AT_HAND, HARM, MOVES, REVERSIBLE, Trial};
 use crate::domain::Domain;
+use crate::laws::domain::CARRIED;
+use crate::laws::feed::components;
 use crate::laws::{Broken, ensure};
 use crate::motion::Instance;
 use crate::partial::PartialState;
@@ -23,6 +25,7 @@ impl<D: Domain> Trial<'_, '_, D> {
             if !self.claims.moves_others {
                 self.moves(instance).map_err(of)?;
             }
+            self.takes_along(instance, &here, &after).map_err(of)?;
             self.mode_changes_at_hand(instance, &here, &after).map_err(of)?;
             if instance.reversible {
                 self.way_back(instance, &here, &after).map_err(of)?;
@@ -38,6 +41,30 @@ impl<D: Domain> Trial<'_, '_, D> {
             let is_moved = instance.moves.contains(ComponentId::Object(id));
             let text = || format!("moves {} as well", self.m.component_name(ComponentId::Object(id)));
             ensure(MOVES, !is_moved || instance.object == Some(id), text, "the robot and the object that it names")?;
+        }
+        Ok(())
+    }
+
+    /// What is carried goes where the robot goes.
+    fn takes_along(&self, instance: &Instance<D>, before: &State<D>, after: &State<D>) -> Result<(), Broken> {
+        let during = instance.at(self.m, 0.5, before).mode;
+        // What is taken up or let go is what the instance is about.
+        for (mode, next) in [(&before.mode, &during), (&during, &after.mode)] {
+            let [was, is] = [mode, next].map(|mode| self.m.carried(mode));
+            for id in components(self.m, was.union(is)) {
+                let changes = was.contains(id) != is.contains(id);
+                let is_its = instance.object.is_some_and(|object| ComponentId::Object(object) == id);
+                let text = || format!("{} taken up or let go, from {mode:?} to {next:?}", self.m.component_name(id));
+                ensure(CARRIED, !changes || is_its, text, "only the object that the instance names")?;
+            }
+        }
+        if before.robot == after.robot {
+            return Ok(());
+        }
+        let carried = self.m.carried(&during);
+        for id in components(self.m, carried) {
+            let text = || format!("the robot without {}, in mode {during:?}", self.m.component_name(id));
+            ensure(CARRIED, instance.moves.contains(id), text, "what is carried moves as well")?;
         }
         Ok(())
     }

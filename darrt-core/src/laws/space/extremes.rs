@@ -131,6 +131,11 @@ const HEARD: f64 = 0.02;
 /// So many coordinates are listened to.
 const MOST_HEARD: usize = 24;
 
+/// How far one goes towards samples, of the way there, to see in which direction that is; and by how much of its length a
+/// direction must leave all others to count as another one.
+const AHEAD: f64 = 1e-5;
+const ASIDE: f64 = 0.05;
+
 /// Many samples: how wide the space is, whether its dimension fits, and whether its tolerance is small.
 pub(super) fn extent<S: ComponentSpace>(space: &S, a: &S::Config, seed: u64) -> Result<(), Broken> {
     let mut widest: f64 = 0.0;
@@ -145,10 +150,45 @@ pub(super) fn extent<S: ComponentSpace>(space: &S, a: &S::Config, seed: u64) -> 
     let count = count(space, a);
     let text = || format!("dimension {} of {count} numbers", space.dimension());
     ensure(DIMENSION, count == 0 || space.dimension() <= count, text, "at most as many as there are numbers")?;
+    let free = directions(space, a, seed)?;
+    let text = || format!("dimension {}, but it goes on in {free} directions", space.dimension());
+    ensure(DIMENSION, space.dimension() >= free, text, "at least as many as there are directions")?;
     if widest > POINT_M {
         at_most(TOLERANCE_SMALL, space.tolerance(), TOLERANCE_SHARE * widest, 0.0)?;
     }
     Ok(())
+}
+
+/// How many of the ways to samples are independent where they begin.
+fn directions<S: ComponentSpace>(space: &S, a: &S::Config, seed: u64) -> Result<usize, Broken> {
+    let start = values(space, a);
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for i in 0..4 * start.len().min(MOST_HEARD) as u64 {
+        let q = drawing("sample", stream(seed, 3, i, Purpose::Sample), |rng| space.sample(rng))?;
+        let ahead = values(space, &space.interpolate(a, &q, AHEAD));
+        let mut way: Vec<f64> = ahead.iter().zip(&start).map(|(x, y)| x - y).collect();
+        let length = |way: &[f64]| way.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let whole = length(&way);
+        // An angle may jump from one end of its range to the other.
+        if whole.is_nan() || whole > 1e3 * AHEAD * (1.0 + length(&start)) || whole <= 0.0 {
+            continue;
+        }
+        for x in &mut way {
+            *x /= whole;
+        }
+        for known in &basis {
+            let along: f64 = way.iter().zip(known).map(|(x, y)| x * y).sum();
+            way.iter_mut().zip(known).for_each(|(x, y)| *x -= along * y);
+        }
+        let rest = length(&way);
+        if rest > ASIDE {
+            for x in &mut way {
+                *x /= rest;
+            }
+            basis.push(way);
+        }
+    }
+    Ok(basis.len())
 }
 
 /// Answers to a handful of questions, to be asked again later.

@@ -8,7 +8,9 @@ use rand::{Rng, RngExt};
 
 use super::{BLAME_KIND, EXEMPTS, NAN, PURE, Trial, WITHOUT_ROBOT};
 use crate::domain::Domain;
-use crate::laws::feed::{components, elsewhere, everything, moved, piled, rng_of, spoilt_states};
+use crate::laws::feed::{
+    beyond_face, components, count_of, elsewhere, everything, moved, piled, rng_of, spoilt_states,
+};
 use crate::laws::watch::entering;
 use crate::laws::{Broken, ensure};
 use crate::motion::Instance;
@@ -16,6 +18,10 @@ use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 use crate::validity::{Blame, BlockKind, Validity};
 
+/// How far outside of their spaces components are shown.
+const BEYOND_M: [f64; 3] = [1e-3, 0.3, 20.0];
+/// How many coordinates of a component are shown there.
+const MOST_BEYOND: usize = 12;
 /// How many spoilt states are shown.
 const SPOILT: usize = 8;
 /// In how many states besides an allowed contact is tried.
@@ -138,6 +144,7 @@ impl<D: Domain> Trial<'_, D> {
     pub(super) fn outside(&self, seed: u64) -> Result<(), Broken> {
         let mut rng = rng_of(&(self.from, seed));
         self.not_a_number(&mut rng)?;
+        self.beyond(&mut rng);
         let mut states = Vec::new();
         for _ in 0..self.claims.anywhere {
             let on_the_way = self.instance.at(self.m, rng.random_range(0.0..=1.0), self.from);
@@ -175,6 +182,19 @@ impl<D: Domain> Trial<'_, D> {
             }
         }
         Ok(())
+    }
+
+    /// One number of one component beyond its face: whatever is said of it, it is said without a panic.
+    fn beyond(&self, rng: &mut crate::random::Stream) {
+        for component in everything(self.m) {
+            for coordinate in 0..count_of(self.m, self.from, component).min(MOST_BEYOND) {
+                for is_upper in [false, true] {
+                    let metres = BEYOND_M.get(rng.random_range(0..BEYOND_M.len())).copied().unwrap_or(0.0);
+                    let at = beyond_face(self.m, self.from, component, coordinate, is_upper, metres);
+                    let _ = self.judge(&at, &self.instance.contacts);
+                }
+            }
+        }
     }
 
     fn exempts(&self, states: &[State<D>]) -> Result<(), Broken> {

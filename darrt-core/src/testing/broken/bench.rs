@@ -190,6 +190,10 @@ pub struct Bench {
     pub hop: fn(&Config, &Config) -> f64,
     /// [`Domain::may_go_on`].
     pub may_go_on: fn(&Tag, &Tag) -> bool,
+    /// [`Domain::carried`].
+    pub carried: fn(&Tag) -> ComponentSet,
+    /// [`Domain::without_robot`].
+    pub without_robot: fn(&Bench) -> Option<Bench>,
     /// [`Domain::component_name`].
     pub name: fn(ComponentId) -> String,
 }
@@ -206,6 +210,8 @@ impl Default for Bench {
             reach_at_least: |gap_m| gap_m,
             hop: along,
             may_go_on: |mode, next| mode == next,
+            carried: |_| ComponentSet::EMPTY,
+            without_robot: |_| None,
             name,
         }
     }
@@ -239,6 +245,14 @@ impl Domain for Bench {
 
     fn may_go_on(&self, mode: &Tag, next: &Tag) -> bool {
         (self.may_go_on)(mode, next)
+    }
+
+    fn carried(&self, mode: &Tag) -> ComponentSet {
+        (self.carried)(mode)
+    }
+
+    fn without_robot(&self) -> Option<Self> {
+        (self.without_robot)(self)
     }
 
     fn reach(&self, robot: &Config, _: ObjectId, at: &Config) -> f64 {

@@ -12,6 +12,7 @@ mod spaces;
 mod strangers;
 mod validities;
 mod verifiers;
+mod ways;
 mod wholes;
 
 pub(super) fn cases() -> Vec<Case> {
@@ -26,6 +27,7 @@ pub(super) fn cases() -> Vec<Case> {
         hangs::cases(),
         wholes::cases(),
         strangers::cases(),
+        ways::cases(),
     ]
     .concat()
 }

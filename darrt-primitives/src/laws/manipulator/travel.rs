@@ -1,10 +1,10 @@
 //! How far points travel.
 
-use darrt_core::laws::{Broken, at_most, equal, measure};
+use darrt_core::laws::{Broken, at_most, ensure, equal, measure};
 use darrt_core::space::ComponentSpace;
 use nalgebra::{Isometry3, Point3, Vector3};
 
-use super::{TRAVEL, TRAVEL_HELD, TRAVEL_LINKS, TRAVEL_MEASURE, Trial};
+use super::{DURATION, TRAVEL, TRAVEL_HELD, TRAVEL_LINKS, TRAVEL_MEASURE, Trial};
 use crate::laws::tabletop::corners;
 use crate::manipulator::{Configuration, Manipulator};
 
@@ -27,16 +27,34 @@ impl<M: Manipulator> Trial<'_, M> {
         for (coordinate, value) in near.base.iter().enumerate() {
             let mut alone = *self.a;
             alone.base.iter_mut().skip(coordinate).take(1).for_each(|slot| *slot = *value);
-            self.bounds(&alone).map_err(|broken| broken.of(format_args!("base coordinate {coordinate} alone")))?;
+            self.bounds(&alone)
+                .and_then(|()| self.takes_time(&alone))
+                .map_err(|broken| broken.of(format_args!("base coordinate {coordinate} alone")))?;
         }
         for joint in 0..self.a.arm.as_ref().len() {
             let mut alone = *self.a;
             if let (Some(slot), Some(value)) = (alone.arm.as_mut().get_mut(joint), near.arm.as_ref().get(joint)) {
                 *slot = *value;
             }
-            self.bounds(&alone).map_err(|broken| broken.of(format_args!("joint {joint} alone")))?;
+            self.bounds(&alone)
+                .and_then(|()| self.takes_time(&alone))
+                .map_err(|broken| broken.of(format_args!("joint {joint} alone")))?;
         }
         Ok(())
+    }
+
+    /// From `a` to `end`, with an empty and a loaded hand.
+    fn takes_time(&self, end: &Configuration<M::Joints>) -> Result<(), Broken> {
+        let seconds = |a, b, is_loaded| self.robot.duration_s(a, b, is_loaded);
+        let [empty, loaded] = [false, true].map(|is_loaded| seconds(self.a, end, is_loaded));
+        for (found, is_loaded) in [(empty, false), (loaded, true)] {
+            measure(DURATION, found)?;
+            equal(DURATION, &seconds(self.a, end, is_loaded), &found).map_err(|broken| broken.of("asked again"))?;
+            equal(DURATION, &seconds(self.a, self.a, is_loaded), &0.0).map_err(|broken| broken.of("to itself"))?;
+        }
+        at_most(DURATION, empty, loaded, SLACK_M).map_err(|broken| broken.of("loaded"))?;
+        let moves = self.robot.travel_m(self.a, end, 0.0) > SLACK_M;
+        ensure(DURATION, !moves || empty > 0.0, || format!("{empty:?} s"), "some time: the robot moves")
     }
 
     fn measures(&self, end: &Configuration<M::Joints>) -> Result<(), Broken> {

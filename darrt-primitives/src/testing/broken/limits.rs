@@ -7,9 +7,10 @@ use nalgebra::{Isometry3, Translation3};
 use super::Case;
 use super::robots::{case, robot};
 use crate::laws::manipulator::{
-    INVERSE_LIMITS, MAY_NOT_REACH, MAY_REACH, NAN, PAIRS, PURE, RIGID, STRENGTH, TRAVEL, TRAVEL_MEASURE, TRAVEL_TIGHT,
+    DURATION, INVERSE_LIMITS, MAY_NOT_REACH, MAY_REACH, NAN, PAIRS, PURE, RIGID, STRENGTH, TRAVEL, TRAVEL_MEASURE,
+    TRAVEL_TIGHT,
 };
-use crate::testing::gantry::{motion, poses};
+use crate::testing::gantry::{Configuration, motion, poses};
 
 pub(super) fn cases() -> Vec<Case> {
     [nonsense(), left_out(), borders()].concat()
@@ -94,6 +95,22 @@ fn left_out() -> Vec<Case> {
         }),
         case("pads of no length", "the length of the pads was left at 0", STRENGTH, || {
             robot(|robot| robot.hand.pad_length_m = 0.0)
+        }),
+        case("a head start", "the time of speeding up is subtracted, also where nothing moves", DURATION, || {
+            robot(|robot| robot.duration = |a, b, _| motion::travel(a, b, 0.0) - 0.1)
+        }),
+        case("no time at rest", "divides by the travel, which is 0 at rest", DURATION, || {
+            robot(|robot| robot.duration = |a, b, _| motion::travel(a, b, 0.0).powi(2) / motion::travel(a, b, 0.0))
+        }),
+        case("the base drives for nothing", "only the arm takes its time", DURATION, || {
+            robot(|robot| {
+                robot.duration = |a, b, _| motion::travel(a, &Configuration { base: a.base, ..*b }, 0.0);
+            })
+        }),
+        case("in a hurry with a full hand", "loaded and empty are exchanged", DURATION, || {
+            robot(|robot| {
+                robot.duration = |a, b, is_loaded| if is_loaded { 1.0 } else { 2.0 } * motion::travel(a, b, 0.0);
+            })
         }),
         case("travel without measure", "a bound so large that it always holds", TRAVEL_TIGHT, || {
             robot(|robot| robot.travel = |a, b, held_m| 1000.0 * motion::travel(a, b, held_m))

@@ -22,6 +22,8 @@ use crate::state::{ComponentId, ObjectId, State};
 
 /// Samples that say whether a space or a sampler covers its range.
 const DRAWS: u64 = 1024;
+/// Pairs of modes that are looked at.
+const MOST_PAIRS: usize = 4096;
 
 pub(super) fn plans<D: Domain>(world: &World<D>) -> Vec<Plan<D>> {
     let mut all = spaces(world);
@@ -89,6 +91,7 @@ fn the_domain<D: Domain>(world: &World<D>) -> Plan<D> {
     .finally(|world, row| {
         let (m, modes) = (&*world.m, modes(world));
         let pairs = modes.iter().flat_map(|a| modes.iter().map(move |b| (a, b)));
+        pairs.clone().take(MOST_PAIRS).try_for_each(|(mode, next)| domain::modes(m, mode, next))?;
         if modes.len() > 2 && pairs.into_iter().all(|(a, b)| m.may_go_on(a, b)) {
             row.warn(format!("may_go_on is true for all pairs of {} modes", modes.len()));
         }

@@ -9,7 +9,7 @@ use super::{Plan, Tally, rng_of_case};
 use crate::domain::Domain;
 use crate::laws::everything::report::Row;
 use crate::laws::everything::world::World;
-use crate::laws::primitive::{ENDS, Excuse, FEASIBLE, NOT_EMPTY, PANICS, PrimitiveClaims, Tried};
+use crate::laws::primitive::{ENDS, Excuse, FEASIBLE, FREE, NOT_EMPTY, PANICS, PrimitiveClaims, Tried};
 use crate::laws::watch::{asking, bounded, entering, guarded};
 use crate::laws::{Broken, MotionClaims, check_contacts, ensure, motion, primitive, try_primitive};
 use crate::partial::PartialState;
@@ -19,6 +19,8 @@ use crate::state::State;
 
 /// Parameters of an instance at which the contact with its object must be allowed.
 const TS: [f64; 4] = [0.2, 0.5, 0.8, 0.95];
+/// A primitive that found so many ways of which none was free finds none that is.
+const MOST_BLOCKED: u64 = 100;
 /// A primitive that was useful so often and never found a way finds none at all.
 const MOST_IN_VAIN: u64 = 1000;
 
@@ -57,12 +59,17 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
                 Tally::count(&counted.hit);
                 Tally::count(&counted.reached);
                 if let Some(validity) = &subjects.validity {
-                    let mut here = from.clone();
+                    let (mut here, mut is_free) = (from.clone(), true);
                     for instance in instances {
+                        entering("free_prefix");
+                        is_free = is_free && validity.free_prefix(m, &instance, &here).blame.is_none();
                         let one = [instance];
                         check_contacts(m, &**validity, &one, &here, &TS)?;
                         let [instance] = one;
                         here = instance.at(m, 1.0, &here);
+                    }
+                    if is_free {
+                        Tally::count(&counted.free);
                     }
                 }
             }
@@ -70,6 +77,7 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
         Ok(())
     };
     let once = move |world: &World<D>, row: &mut Row| {
+        let found_in_cases = Tally::get(&tally.reached);
         let calls = many_calls(world, index, &tally)?;
         let [tried, hit, reached] = [&tally.tried, &tally.hit, &tally.reached].map(Tally::get);
         row.cases = calls;
@@ -82,7 +90,20 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
             let found = format!("no way in {hit} of {hit} calls");
             return Err(Broken::new(FEASIBLE, found, "a way now and then, where it is useful").of(name));
         }
-        Ok(())
+        for (kind, [useful, found]) in tally.kinds.iter().enumerate() {
+            let [useful, found] = [useful, found].map(Tally::get);
+            let says = |bit: usize, what: &'static str| if kind & bit == 0 { "" } else { what };
+            let open = [says(1, "the robot"), says(2, "an object")].join(" ");
+            let text = || {
+                format!("no way in {useful} of {useful} calls with {open} to be moved{}", says(4, ", in another mode"))
+            };
+            ensure(FEASIBLE, useful < MOST_IN_VAIN || found > 0, text, "a way now and then, where it is useful")
+                .map_err(|broken| broken.of(name))?;
+        }
+        let (walked, free) = (found_in_cases, Tally::get(&tally.free));
+        let text = || format!("blocked in {walked} of {walked} propagations");
+        let is_known = world.subjects.validity.is_some() && walked >= MOST_BLOCKED;
+        ensure(FREE, !is_known || free > 0, text, "free now and then").map_err(|broken| broken.of(name))
     };
     let laws = primitive::LAWS.len() + motion::LAWS.len();
     Some(Plan::new(name, laws, world.subjects.effort.cases, case).finally(once))
@@ -91,7 +112,7 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
 /// Many calls that only look whether they come back, without panic: for what happens once in a thousand times.
 fn many_calls<D: Domain>(world: &World<D>, index: usize, tally: &Tally) -> Result<u64, Broken> {
     let Some(primitive) = world.subjects.primitives.get(index) else { return Ok(0) };
-    let (m, calls) = (&*world.m, world.subjects.effort.calls);
+    let calls = world.subjects.effort.calls;
     let began = AtomicU64::new(0);
     for i in 0..calls {
         let number = stream(world.seed, 24, i, Purpose::Attempt).random();
@@ -105,7 +126,7 @@ fn many_calls<D: Domain>(world: &World<D>, index: usize, tally: &Tally) -> Resul
             let name = primitive.name();
             let about = || format!("check_primitive(&{name}, &{from:?}, &{to:?}, {number}), draw {attempt}");
             let draws = stream(number, attempt, 0, Purpose::Extend);
-            asking(about, || one_call(m, &**primitive, (&from, &to), draws, tally))
+            asking(about, || one_call(world, &**primitive, (&from, &to), draws, tally))
                 .map_err(|broken| broken.of(name).replayed_by(about))?;
         }
         if began.load(Relaxed) >= calls {
@@ -117,22 +138,30 @@ fn many_calls<D: Domain>(world: &World<D>, index: usize, tally: &Tally) -> Resul
 
 /// Whether it comes back, without panic, and not with nothing.
 fn one_call<D: Domain>(
-    m: &D,
+    world: &World<D>,
     primitive: &dyn Primitive<D>,
     (from, to): (&State<D>, &PartialState<D>),
     draws: Stream,
     tally: &Tally,
 ) -> Result<(), Broken> {
+    let m = &*world.m;
     entering("useful");
     if !guarded(PANICS, || primitive.useful(m, from, to))? {
         return Ok(());
     }
     Tally::count(&tally.hit);
+    let is_elsewhere = from.mode != world.subjects.start.mode;
+    let kind = usize::from(!to.is_robot_met(m, from))
+        + 2 * usize::from(!to.are_objects_met(m, from))
+        + 4 * usize::from(is_elsewhere);
+    let [useful, ways] = tally.kinds.get(kind).map_or([&tally.hit; 2], |[useful, ways]| [useful, ways]);
+    Tally::count(useful);
     entering("propagate");
     let most = PrimitiveClaims::<D>::default().max_draws;
     let found = bounded(PANICS, ENDS, most, draws, |rng| primitive.propagate(m, from, to, rng))?;
     if let Ok(instances) = found {
         Tally::count(&tally.reached);
+        Tally::count(ways);
         ensure(NOT_EMPTY, !instances.is_empty(), || "no instances".to_owned(), "at least one")?;
     }
     Ok(())

@@ -16,7 +16,7 @@ use crate::laws::{Broken, check_by_oracle, check_planner, check_validity, planne
 use crate::partial::PartialState;
 use crate::random::{Purpose, stream};
 use crate::solve::{SolveOptions, solve};
-use crate::state::{ObjectId, State};
+use crate::state::{ComponentId, ObjectId, State};
 use crate::validity::BlockKind;
 
 /// Motions looked at in each case.
@@ -96,11 +96,14 @@ fn held<D: Domain>(world: &World<D>) -> Result<(), Broken> {
         let id = ObjectId::new(rng.random_range(0..m.objects().len().max(1)));
         let aim = elsewhere(m, &subjects.start, &mut rng);
         let Some(place) = aim.object(id) else { return Ok(()) };
-        let mut resting = subjects.start.clone();
+        // The others are where they will be; from where it was nothing is in the way.
+        let mut resting = State { objects: from.objects.clone(), ..subjects.start.clone() };
         resting.objects.iter_mut().skip(id.index()).take(1).for_each(|slot| slot.clone_from(place));
         entering("check");
         let Err(blame) = validity.check(m, &resting, &none) else { continue };
-        if blame.kind != BlockKind::ObjectFixed {
+        let name = m.component_name(ComponentId::Object(id));
+        let is_its = *blame.first == *name || *blame.second == *name;
+        if !is_its || !matches!(blame.kind, BlockKind::ObjectFixed | BlockKind::ObjectObject) {
             continue;
         }
         let to = PartialState::anywhere(m).with_object(id, place.clone());

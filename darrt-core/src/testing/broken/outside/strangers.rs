@@ -13,14 +13,15 @@ use crate::goal::Region;
 use crate::laws::distance::RESOLVES;
 use crate::laws::goal::ASKS;
 use crate::laws::space::{DIMENSION, EVEN, SAMPLE_FILLS};
-use crate::laws::validity::{INSIDE, LAX};
+use crate::laws::validity::{CUT, INSIDE, LAX};
+use crate::laws::watch::PANICS;
 use crate::laws::{
     Broken, SpaceClaims, ValidityClaims, check_by_oracle, check_component_space, check_distance, check_goal,
     check_space_covers, check_validity,
 };
 use crate::partial::PartialState;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
-use crate::validity::{Blame, BlockKind};
+use crate::validity::{Blame, BlockKind, FreePrefix};
 
 fn space(space: Sketch) -> Result<(), Broken> {
     for i in 0..CASES {
@@ -62,6 +63,17 @@ fn beyond(rule: Rule) -> Result<(), Broken> {
     from.robot = [3.9, 0.0];
     from.objects.iter_mut().for_each(|at| at[0] = 0.5);
     let moved = Arc::new(go(&m, &from, [rng.random_range(4.2..5.0), 0.0]));
+    let claims = ValidityClaims { same_names: false, ..ValidityClaims::default() };
+    check_validity(&m, &rule, &moved, &from, &claims, seed())
+}
+
+/// From before the wall into it.
+fn into_the_wall(rule: Rule) -> Result<(), Broken> {
+    let (m, mut rng) = (Bench::default(), inputs(0));
+    let mut from = random_state(&mut rng);
+    from.robot = [rng.random_range(0.2..0.6), 0.0];
+    from.objects.iter_mut().for_each(|at| at[0] = 3.5);
+    let moved = Arc::new(go(&m, &from, [rng.random_range(1.2..1.4), 0.0]));
     let claims = ValidityClaims { same_names: false, ..ValidityClaims::default() };
     check_validity(&m, &rule, &moved, &from, &claims, seed())
 }
@@ -124,6 +136,35 @@ fn of_spaces() -> Vec<Case> {
         case("one dimension for each joint of another robot", "a number copied from elsewhere", DIMENSION, || {
             space(Sketch { dimension: 7, ..Sketch::default() })
         }),
+        case("one dimension too few", "the heading was added later, and not counted", DIMENSION, || {
+            space(Sketch { dimension: 1, ..Sketch::default() })
+        }),
+        case("one draw for both", "position and heading come from the same number", SAMPLE_FILLS, || {
+            space(Sketch {
+                sample: |rng| {
+                    let share: f64 = rng.random_range(0.0..=1.0);
+                    [4.0 * share, 6.0 * share - 3.0]
+                },
+                ..Sketch::default()
+            })
+        }),
+        case("a corner is cut", "far along the rail it never looks to the left", SAMPLE_FILLS, || {
+            space(Sketch {
+                sample: |rng| loop {
+                    let q = sample(rng);
+                    if q[0] < 3.0 || q[1] < 1.5 {
+                        return q;
+                    }
+                },
+                ..Sketch::default()
+            })
+        }),
+        case("a fine lattice", "positions are drawn in whole centimetres", SAMPLE_FILLS, || {
+            space(Sketch {
+                sample: |rng| [f64::from(rng.random_range(0..=400)) / 100.0, sample(rng)[1]],
+                ..Sketch::default()
+            })
+        }),
         case(
             "the long way round",
             "the heading goes from one angle to the other without a look at the circle",
@@ -155,6 +196,51 @@ fn of_others() -> Vec<Case> {
             law: RESOLVES,
             broken: || distance(|m, from, to| (10.0 * metres(m, from, to)).ceil() / 10.0),
             honest: || distance(metres),
+        },
+        Case {
+            name: "single precision",
+            wrong: "the sum is kept in single precision: far away small steps make no difference",
+            law: RESOLVES,
+            broken: || distance(|m, from, to| single(metres(m, from, to))),
+            honest: || distance(metres),
+        },
+        Case {
+            name: "saturates smoothly",
+            wrong: "a hyperbolic tangent keeps it below a metre: all that is far is equally far",
+            law: RESOLVES,
+            broken: || distance(|m, from, to| (4.0 * metres(m, from, to)).tanh()),
+            honest: || distance(metres),
+        },
+        Case {
+            name: "short ways are free",
+            wrong: "no looks at motions of less than two centimetres: the number of steps is rounded down",
+            law: CUT,
+            broken: || {
+                into_the_wall(Rule {
+                    free_prefix: |rule, m, motion, from| {
+                        let is_short = motion.motion.length() < 0.02;
+                        if is_short { FreePrefix::FREE } else { bench::scan(rule, m, motion, from, 1e-3) }
+                    },
+                    ..Rule::default()
+                })
+            },
+            honest: || into_the_wall(Rule::default()),
+        },
+        Case {
+            name: "a table that ends with the rail",
+            wrong: "looks up the cell of the robot in a table of just the cells that there are",
+            law: PANICS,
+            broken: || {
+                into_the_wall(Rule {
+                    check: |wall, state, contacts| {
+                        let cell = (10.0 * state.robot[0]).floor();
+                        assert!(!cell.is_finite() || (0.0..=40.0).contains(&cell), "index out of bounds");
+                        bench::check(wall, state, contacts)
+                    },
+                    ..Rule::default()
+                })
+            },
+            honest: || into_the_wall(Rule::default()),
         },
         Case {
             name: "no ends",
@@ -191,4 +277,11 @@ fn of_others() -> Vec<Case> {
 fn finite(state: &State<Bench>) -> Result<(), Blame> {
     let is_finite = state.objects.iter().chain([&state.robot]).flatten().all(|x| x.is_finite());
     if is_finite { Ok(()) } else { Err(bench::blame(BlockKind::Limits, "no number", 0.0)) }
+}
+
+/// In single precision.
+fn single(value: f64) -> f64 {
+    #[expect(clippy::cast_possible_truncation, reason = "that is the fault")]
+    let single = value as f32;
+    f64::from(single)
 }

@@ -1,15 +1,15 @@
 //! Broken parts that show when everything is checked together.
 
-use super::super::bench::{Act, Bench, Rule, cart, robot_at, state};
-use super::super::motions::go;
+use super::super::bench::{Act, Bench, Config, Propagate, Rule, cart, robot_at, state};
+use super::super::motions::{go, instance};
 use super::super::{Case, seed};
 use crate::goal::Region;
 use crate::laws::everything::Effort;
 use crate::laws::planner::PROBLEM;
-use crate::laws::primitive::FEASIBLE;
+use crate::laws::primitive::{FEASIBLE, FREE};
 use crate::laws::validity::HELD;
 use crate::laws::{Broken, Subjects, ValidityClaims, check_everything};
-use crate::motion::Instance;
+use crate::motion::{Instance, Waypoints};
 use crate::primitive::{Infeasible, Primitive};
 use crate::state::{ComponentSet, State};
 use crate::testing::puck::{Clearance, Obstacle, Outline, PuckWorld, Setup};
@@ -22,19 +22,35 @@ const GO: Act = Act {
     propagate: |m, from, to, _| Ok(vec![go(m, from, to.robot_overlay(m, &from.robot))]),
 };
 
+/// To the wall, and from there to the target.
+fn through(m: &Bench, from: &State<Bench>, target: Config) -> Option<Instance<Bench>> {
+    let [middle, end] = [[1.2, 0.0], target].map(|robot| State { robot, ..from.clone() });
+    let legs = [(from, &middle), (&middle, &end)].map(|(a, b)| (m.robot.distance)(&a.robot, &b.robot));
+    Some(instance(Waypoints::new(vec![from.clone(), middle, end], &legs, from.mode.clone())?, ComponentSet::ROBOT))
+}
+
 fn check(start: State<Bench>, act: Act) -> Result<(), Broken> {
+    check_with(4, start, act)
+}
+
+fn check_with(cases: u64, start: State<Bench>, act: Act) -> Result<(), Broken> {
     let rule = Rule::default();
     let primitives: Vec<Box<dyn Primitive<Bench>>> = vec![Box::new(act)];
     let goal = Region::<Bench>::new(
         Box::new(|_, s: &State<Bench>| s.robot[0] < 0.1),
         Box::new(|_, _| Some(robot_at([0.05, 0.0]))),
     );
-    let subjects = Subjects::new(start)
-        .goal(goal)
-        .primitives(primitives)
-        .validity(rule)
-        .verifier(Replay::new(rule, 1e-2))
-        .effort(Effort { cases: 4, calls: 8192, iterations: 20, apart_ms: 0, seed: seed(), ..Effort::default() });
+    let subjects =
+        Subjects::new(start).goal(goal).primitives(primitives).validity(rule).verifier(Replay::new(rule, 1e-2)).effort(
+            Effort {
+                cases,
+                calls: 8192,
+                iterations: if cases > 4 { 0 } else { 20 },
+                apart_ms: 0,
+                seed: seed(),
+                ..Effort::default()
+            },
+        );
     match check_everything(Bench::default(), subjects) {
         Ok(_) => Ok(()),
         Err(report) => report.broken().next().map_or(Ok(()), |broken| Err(broken.clone())),
@@ -91,6 +107,13 @@ pub(super) fn cases() -> Vec<Case> {
     vec![
         case("finds nothing, ever", "looks useful, and every way is infeasible", FEASIBLE, || {
             check(state([0.5, 0.1]), Act { propagate: |_, _, _, _| Err(Infeasible::Unreachable), ..GO })
+        }),
+        case("never free", "proposes ways that end in the wall, whatever the target", FREE, || {
+            let propagate: Propagate = |m, from, to, _| {
+                let way = through(m, from, to.robot_overlay(m, &from.robot));
+                way.map(|way| vec![way]).ok_or(Infeasible::Unreachable)
+            };
+            check_with(512, state([0.5, 0.1]), Act { propagate, ..GO })
         }),
         Case {
             name: "held is fine",
