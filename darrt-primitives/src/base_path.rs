@@ -14,6 +14,7 @@
 //! check of every straight drive. A coarse lattice first, a finer one where it finds nothing. No random choice, no clock.
 
 use darrt_core::reroute::NoWay;
+use darrt_core::space::so2::turn;
 
 use crate::manipulator::Manipulator;
 use crate::tabletop::{Tabletop, TabletopState};
@@ -36,6 +37,7 @@ use footprint::Footprint;
 use lattice::Lattice;
 use nalgebra::Vector2;
 use search::{Outcome, Search};
+use shorten::Way;
 use sight::{Judge, Sight, Stop, Terms};
 
 /// What a way of the base costs, and how hard it is looked for.
@@ -65,6 +67,16 @@ struct Level {
 
 /// Coarse first. HEURISTIC: a third of the robot's width and a twelfth of a half turn find nearly all ways at once.
 const LEVELS: [Level; 2] = [Level { spacing_m: 0.1, step_deg: 15.0 }, Level { spacing_m: 0.05, step_deg: 7.5 }];
+
+/// A way that costs more than so many times the straight drive is looked for once more, on a lattice
+const STRAIGHT_ENOUGH: f64 = 1.1;
+/// of so many rows across all that may be cheaper,
+const ROWS: f64 = 16.0;
+/// that are not farther apart, and not nearer, than that, metres,
+const FINER: Level = Level { spacing_m: 0.06, step_deg: 7.5 };
+const LEAST_SPACING_M: f64 = 0.02;
+/// as long as not more than so many poses have been looked at.
+const MORE_LOOKS: usize = 4_000;
 
 /// Most cells of a lattice; where there are more, the rows are farther apart.
 const CELLS: f64 = 2e6;
@@ -173,10 +185,44 @@ fn way_along(level: Level, [start, goal]: [&[f64; 3]; 2], sight: &mut Sight<'_>,
         outcome = Search::new(sight, &lattice, &bounds, step_rad, stops).run(usize::MAX, looks);
     }
     match outcome {
-        Outcome::Found(way) => shorten::shorten(sight, &way).map_or(Trial::Hope, |way| Trial::Way(way.poses())),
+        Outcome::Found(way) => match shorten::shorten(sight, &way) {
+            Some(way) => Trial::Way(refined(way, stops, sight, looks).poses()),
+            None => Trial::Hope,
+        },
         Outcome::Enclosed if sight.narrow() == narrow => Trial::Hopeless,
         Outcome::Enclosed | Outcome::Stopped => Trial::Hope,
     }
+}
+
+/// The way, or a cheaper one along a lattice that is finer the shorter the way is, where there may be one.
+fn refined(way: Way, stops: [Stop; 2], sight: &mut Sight<'_>, looks: usize) -> Way {
+    let [start, goal] = stops.map(|stop| stop.at);
+    let cost_m = way.cost_m();
+    if cost_m <= STRAIGHT_ENOUGH * sight.open_cost_m(&start, &goal) {
+        return way;
+    }
+    // What is cheaper lies in the ellipse around both ends, thus in a circle about the middle.
+    let turn_m = sight.terms.turn_m * turn(start[2], goal[2]).abs();
+    let radius_m = 0.5 * (cost_m - turn_m);
+    let spacing_m = 2.0 * radius_m / ROWS;
+    if spacing_m > FINER.spacing_m {
+        return way;
+    }
+    let [from, to] = [start, goal].map(|at| Vector2::new(at[0], at[1]));
+    let middle = 0.5 * (from + to);
+    let position = sight.footprint.bounds().position();
+    let low = (middle - Vector2::repeat(radius_m)).sup(&Vector2::from(*position.lower()));
+    let high = (middle + Vector2::repeat(radius_m)).inf(&Vector2::from(*position.upper()));
+    let step_rad = FINER.step_deg.to_radians();
+    let lattice = Lattice::new(&from, [low, high], [start[2], goal[2]], spacing_m.max(LEAST_SPACING_M), step_rad);
+    let bounds = Bounds::straight(&lattice, lattice.nearest(&goal).place);
+    let looks = looks.min(sight.footprint.looks() + MORE_LOOKS);
+    let found = Search::new(sight, &lattice, &bounds, step_rad, stops).below(cost_m).run(usize::MAX, looks);
+    let finer = match found {
+        Outcome::Found(finer) => shorten::shorten(sight, &finer).filter(|finer| finer.cost_m() < cost_m),
+        _ => None,
+    };
+    finer.unwrap_or(way)
 }
 
 /// Rows in which the robot can go around all obstacles, within its bounds.

@@ -16,7 +16,7 @@ use crate::state::{ComponentId, ObjectId, State};
 
 /// What every degree of [care](crate::validity::Validity::most_care) is worth with which a motion could be free and is not,
 /// seconds.
-const CARE_S: f64 = 3.0;
+const CARE_S: f64 = 6.0;
 
 impl<D: Domain> Roadmap<'_, D> {
     /// Finds the ways of the cheapest chain, and supposes that what is blocked on them finds a way around. `None` if there is

@@ -5,6 +5,7 @@
 
 use darrt_core::domain::Domain;
 use darrt_core::space::ComponentSpace;
+use darrt_core::space::so2::turn;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 
@@ -33,6 +34,10 @@ const AHEAD_RAD: f64 = 0.4;
 const CARRIED_M: [f64; 2] = [0.35, 0.75];
 /// How much higher or lower than now an object is carried, metres.
 const CARRIED_RISE_M: f64 = 0.25;
+/// So far a straight drive goes between two looks at what is in the way, metres and radians, but for
+const LOOK_M: f64 = 0.15;
+/// so many parts at most.
+const MOST_LOOKS: f64 = 12.0;
 /// In how many parts a move of the arm is looked at for how far what is held leans.
 const LOOKS: u32 = 8;
 
@@ -48,7 +53,8 @@ pub(super) enum Order<J> {
 }
 
 /// The cheapest order found in which nothing is in the way of the robot and what it holds at either end of the drive; first
-/// those in which the robot is not too wide for a passage.
+/// those in which the robot is not too wide for a passage. One whose straight drive is clear too, as far as a few looks tell, goes
+/// before: an arm that sticks out makes the base go around what a folded one passes.
 /// Costs are metres of travel, with a part left to chance.
 pub(super) fn order<M: Manipulator>(
     m: &Tabletop<M>,
@@ -77,17 +83,43 @@ pub(super) fn order<M: Manipulator>(
     let mut costs: Vec<_> = costs.collect();
     costs.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut probe = Probe::new(m, from, from.mode.clone());
-    let mut is_fit = |arm: &M::Joints, care| {
-        [from.robot.base, target.base]
-            .into_iter()
-            .all(|base| probe.is_clear(&Configuration { base, arm: *arm }, &Contacts::default(), care))
-            && held.is_none_or(|held| {
-                stays_level(m, &held, &from.robot.arm, arm) && stays_level(m, &held, arm, &target.arm)
-            })
+    let mut is_clear = |base: &[f64; 3], arm: &M::Joints, care| {
+        probe.is_clear(&Configuration { base: *base, arm: *arm }, &Contacts::default(), care)
     };
-    let cares = [m.surroundings().most_care(), 0];
-    let found = cares.iter().find_map(|care| costs.iter().find(|(.., arm)| is_fit(arm, *care))).or(costs.first());
-    found.map_or(Order::BaseFirst, |(_, _, order, _)| *order)
+    let stays = |arm: &M::Joints| {
+        held.is_none_or(|held| stays_level(m, &held, &from.robot.arm, arm) && stays_level(m, &held, arm, &target.arm))
+    };
+    let looks = looks_along(m, from, &target.base);
+    for care in [m.surroundings().most_care(), 0] {
+        let mut cheapest = None;
+        for (_, _, order, arm) in &costs {
+            let is_fit = is_clear(&from.robot.base, arm, care) && is_clear(&target.base, arm, care) && stays(arm);
+            // As far as a few looks tell the drive need not turn aside.
+            if is_fit && looks.iter().all(|base| is_clear(base, arm, care)) {
+                return *order;
+            }
+            if is_fit {
+                cheapest.get_or_insert(*order);
+            }
+        }
+        if let Some(order) = cheapest {
+            return order;
+        }
+    }
+    costs.first().map_or(Order::BaseFirst, |(_, _, order, _)| *order)
+}
+
+/// Poses on the straight drive at which it is looked whether something is in the way; none where it would be in the way of
+/// any arm.
+fn looks_along<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>, to: &[f64; 3]) -> Vec<[f64; 3]> {
+    let Configuration { base: [x, y, yaw], arm } = from.robot;
+    let travel_m = (to[0] - x).hypot(to[1] - y) + turn(yaw, to[2]).abs();
+    let parts = (travel_m / LOOK_M).ceil().clamp(1.0, MOST_LOOKS);
+    let shares = (1..).map(|i| f64::from(i) / parts).take_while(|share| *share < 1.0);
+    let looks: Vec<_> = shares.map(|share| m.robot().base().interpolate(&from.robot.base, to, share)).collect();
+    let (around, robot) = (m.surroundings(), m.manipulator());
+    let is_free = looks.iter().all(|base| around.is_base_clear(robot, &Configuration { base: *base, arm }));
+    if is_free { looks } else { Vec::new() }
 }
 
 /// What it costs to drive with the arm at `arm`: the arm's travel to there and from there on, and the drive, dearer with the

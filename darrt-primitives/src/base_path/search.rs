@@ -101,6 +101,8 @@ pub(super) struct Search<'a, 's> {
     room: Room,
     step_rad: f64,
     goal: [f64; 3],
+    /// Only ways that cost less are wanted, metres.
+    below_m: f64,
     /// By number of the cell.
     known: Vec<Known>,
     /// The goal, the start, and what was reached.
@@ -123,11 +125,18 @@ impl<'a, 's> Search<'a, 's> {
         let room = Room { shift_m: WITHIN * lattice.spacing_m(), turn_rad: WITHIN * step_rad };
         let known = vec![Known::Unseen; lattice.len()];
         let (nodes, open) = (Vec::new(), BinaryHeap::new());
-        let mut search = Self { sight, lattice, bounds, room, step_rad, goal: goal.at, known, nodes, open };
+        let mut search =
+            Self { sight, lattice, bounds, room, step_rad, goal: goal.at, below_m: f64::INFINITY, known, nodes, open };
         search.add(goal, true, None);
         search.add(start, true, Some(lattice.nearest(&start.at)));
         search.arrive(START, START, 0.0, None);
         search
+    }
+
+    /// Looks only for ways that cost less.
+    pub(super) fn below(mut self, below_m: f64) -> Self {
+        self.below_m = below_m;
+        self
     }
 
     /// Expands up to `expansions` nodes, as long as no more than `looks` poses have been looked at in all.
@@ -148,17 +157,19 @@ impl<'a, 's> Search<'a, 's> {
         Outcome::Enclosed
     }
 
+    /// What the rest of a way costs at least from a pose, metres.
+    fn rest_m(&self, cell: Cell, at: &[f64; 3]) -> f64 {
+        let turn_m = self.sight.terms.turn_m * turn(at[2], self.goal[2]).abs();
+        self.bounds.metres(cell.place, self.lattice.place_number(cell.place)) + turn_m
+    }
+
     fn node(&self, node: u32) -> Option<Node> {
         self.nodes.get(node as usize).copied()
     }
 
     /// A new node, to which no way is known yet.
     fn add(&mut self, stop: Stop, is_seen: bool, cell: Option<Cell>) -> u32 {
-        let to_goal = |cell: Cell| {
-            let turn_m = self.sight.terms.turn_m * turn(stop.at[2], self.goal[2]).abs();
-            self.bounds.metres(cell.place, self.lattice.place_number(cell.place)) + turn_m
-        };
-        let bound_m = cell.map_or(0.0, to_goal);
+        let bound_m = cell.map_or(0.0, |cell| self.rest_m(cell, &stop.at));
         #[expect(
             clippy::cast_possible_truncation,
             reason = "fewer nodes than cells, of which there are fewer than 2^32"
@@ -187,7 +198,7 @@ impl<'a, 's> Search<'a, 's> {
     /// A way to `node` that costs `cost_m`: is it the cheapest so far?
     fn arrive(&mut self, node: u32, parent: u32, cost_m: f64, via: Option<[f64; 3]>) {
         let Some(slot) = self.nodes.get_mut(node as usize) else { return };
-        if cost_m < slot.cost_m && slot.bound_m.is_finite() {
+        if cost_m < slot.cost_m && cost_m + slot.bound_m < self.below_m {
             (slot.cost_m, slot.parent, slot.via) = (cost_m, parent, via);
             self.open.push(Open { total_m: cost_m + WEIGHT * slot.bound_m, cost_m, node });
         }
@@ -228,6 +239,10 @@ impl<'a, 's> Search<'a, 's> {
     /// Tries the step from a node to a cell; `Break` if the cell is blocked.
     fn reach(&mut self, from: u32, here: &Node, cell: Cell) -> ControlFlow<()> {
         let number = self.lattice.number(cell);
+        let at = self.lattice.pose(cell);
+        if here.cost_m + self.sight.open_cost_m(&here.stop.at, &at) + self.rest_m(cell, &at) >= self.below_m {
+            return ControlFlow::Continue(());
+        }
         let to = match self.known.get(number) {
             Some(Known::Node(to)) => *to,
             Some(Known::Unseen) => {

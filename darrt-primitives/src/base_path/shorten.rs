@@ -83,7 +83,7 @@ impl Way {
     }
 
     /// What all of it costs, metres.
-    fn cost_m(&self) -> f64 {
+    pub(super) fn cost_m(&self) -> f64 {
         self.costs_m.iter().sum()
     }
 

@@ -2,7 +2,7 @@
 
 use darrt_pr2::verify;
 use darrt_task::plan_file::{PlanFile, Pose};
-use darrt_task::problem_file::{Obstacle, Region};
+use darrt_task::problem_file::{Obstacle, Region, Surface};
 use darrt_task::verify::{RefusalKind, WarningKind};
 
 use super::{about, block, refused};
@@ -30,6 +30,25 @@ fn with_saucer(at: [f64; 2]) -> PlanFile {
     for waypoint in waypoints.chain([&mut plan.start]) {
         waypoint.objects.insert("saucer".into(), pose);
     }
+    plan
+}
+
+/// The push, which ends at y = -0.25, with the table in two surfaces that meet 20 mm before that.
+fn over_a_seam() -> PlanFile {
+    let mut plan = plans::push();
+    let seam = -0.23;
+    let half = |name: &str, low: f64, high: f64| Surface {
+        name: name.to_owned(),
+        top_of: None,
+        polygon: Some(vec![[-0.45, low], [0.45, low], [0.45, high], [-0.45, high]]),
+        z: Some(0.75),
+        body: Some(TABLE.to_owned()),
+    };
+    plan.problem.obstacles.retain(|obstacle| obstacle.standing_on.is_none());
+    let surfaces = &mut plan.problem.surfaces;
+    surfaces.retain(|surface| surface.name != "central table");
+    surfaces.extend([half("central table", seam, 0.6), half("right half", -0.6, seam)]);
+    plan.problem.goal.objects[0].on = Some("right half".to_owned());
     plan
 }
 
@@ -111,4 +130,17 @@ fn a_goal_beside_something_may_be_reached() {
 #[test]
 fn a_collision_is_no_matter_of_margins() {
     refused(plans::push(), 2, RefusalKind::Collision, |plan| plan.problem.obstacles.push(brick(-0.01)));
+}
+
+#[test]
+fn the_seam_of_surfaces_that_lie_flush_is_no_edge() {
+    let plan = over_a_seam();
+    assert_eq!(plan.problem.safety.edge_margin_m, 0.03);
+    assert!(!kinds(&plan).contains(&WarningKind::Edge), "{:?}", verify(&plan).unwrap().warnings);
+    // Where the half beyond ends, there is one.
+    let mut plan = plan;
+    plan.problem.safety.edge_margin_m = 0.4;
+    let proof = verify(&plan).unwrap();
+    let warning = proof.warnings.iter().find(|warning| warning.kind == WarningKind::Edge).unwrap();
+    assert!((warning.found - 0.25).abs() < 2e-3, "{warning}");
 }

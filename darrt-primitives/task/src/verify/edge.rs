@@ -54,7 +54,7 @@ pub(super) fn flaw(
 
 /// How far inside the edge a place is, metres; negative beside it. Up to `enough_m` the surfaces count as one that lie flush
 /// with this one and on which the object may stand too.
-fn inside_m(
+pub(super) fn inside_m(
     world: &World<'_>,
     object: usize,
     surface: usize,

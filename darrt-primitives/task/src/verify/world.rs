@@ -26,10 +26,13 @@ pub(super) struct Movable<'a> {
 /// The fixed world and the objects.
 #[derive(Debug)]
 pub(super) struct World<'a> {
+    /// Every part of every fixed body.
     pub(super) fixed: Vec<(Solid, Isometry3<f64>)>,
+    /// By part: the body that it is of.
+    body_of_fixed: Vec<usize>,
     pub(super) movables: Vec<Movable<'a>>,
     scene: Scene,
-    /// By surface: the fixed body under it, where known.
+    /// By surface: the body under it, where known.
     carriers: Vec<Option<usize>>,
     flush: Flush,
     /// By object and surface, see [`World::across`].
@@ -42,11 +45,12 @@ impl<'a> World<'a> {
             Refusal::whole(RefusalKind::Problem, format!("the scene of the problem cannot be built: {error}"))
         };
         let geometry = problem.geometry().map_err(|e| refuse(&e))?;
-        let mut fixed = Vec::new();
-        for body in geometry.scene.bodies() {
+        let (mut fixed, mut body_of_fixed) = (Vec::new(), Vec::new());
+        for (index, body) in geometry.scene.bodies().iter().enumerate() {
             for part in &body.body.parts {
                 let solid = Solid::new(&body.body.name, part.shape.clone()).map_err(|e| refuse(&e))?;
                 fixed.push((solid, body.world_from_body * part.body_from_shape));
+                body_of_fixed.push(index);
             }
         }
         let surface_index = |name: &str| geometry.scene.surfaces().iter().position(|s| s.name() == name);
@@ -61,18 +65,14 @@ impl<'a> World<'a> {
                 surfaces: problem.allowed_surfaces(spec).into_iter().filter_map(surface_index).collect(),
             });
         }
-        let carriers = geometry.carriers.iter().map(|carrier| {
-            let name = &geometry.scene.bodies().get((*carrier)?)?.body.name;
-            fixed.iter().position(|(solid, _)| solid.name() == &**name)
-        });
-        let carriers = carriers.collect();
+        let carriers = geometry.carriers;
         let scene = geometry.scene;
         let flush = Flush::new(scene.surfaces());
         let of_object = |movable: &Movable<'_>| {
             (0..scene.surfaces().len()).map(|surface| flush.group(surface, &movable.surfaces)).collect()
         };
         let groups = movables.iter().map(of_object).collect();
-        Ok(Self { fixed, movables, scene, carriers, flush, groups })
+        Ok(Self { fixed, body_of_fixed, movables, scene, carriers, flush, groups })
     }
 
     /// Index of the movable object called `name`.
@@ -92,7 +92,8 @@ impl<'a> World<'a> {
     /// Whether an object that stands on the surface, or across a seam from it, touches the fixed body: the one under it, or any
     /// where that is not known.
     pub(super) fn carries(&self, object: usize, surface: usize, fixed: usize) -> bool {
-        let is_on = |surface| self.carriers.get(surface).copied().flatten().is_none_or(|carrier| carrier == fixed);
+        let body = self.body_of_fixed.get(fixed).copied();
+        let is_on = |surface| self.carriers.get(surface).copied().flatten().is_none_or(|carrier| Some(carrier) == body);
         self.across(object, surface).iter().copied().any(is_on)
     }
 

@@ -5,6 +5,7 @@ use darrt_primitives::kinematics::limit::wrap_to_pi;
 use nalgebra::{Isometry3, Point2, Vector3};
 
 use super::{Judge, Trial};
+use crate::verify::edge;
 use crate::verify::margins::{MarginKind, Placed};
 use crate::verify::mode::Mode;
 use crate::verify::motion::State;
@@ -146,9 +147,9 @@ impl Judge<'_> {
         let (Some(Mode::Resting { surface }), Some(pose)) = (self.modes.get(object), end.objects.get(object)) else {
             return;
         };
-        let Some(surface) = self.world.surface(*surface) else { return };
-        let (depth_m, wanted_m) =
-            (surface.depth(&Point2::from(pose.translation.vector.xy())), self.plan.problem.safety.edge_margin_m);
+        let (centre, wanted_m) = (Point2::from(pose.translation.vector.xy()), self.plan.problem.safety.edge_margin_m);
+        let depth_m = edge::inside_m(&self.world, object, *surface, &centre, wanted_m, self.options);
+        let (Some(depth_m), Some(surface)) = (depth_m, self.world.surface(*surface)) else { return };
         if depth_m < wanted_m - self.options.rounding {
             let bodies = [self.world.object_name(object), surface.name()];
             self.remarks.warnings.push(Warning::new(WarningKind::Edge, Some(step), &bodies, depth_m, wanted_m));
