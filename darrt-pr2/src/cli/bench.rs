@@ -204,7 +204,7 @@ impl Told {
 
     fn write(&self, all: &Collection) -> Result<(), Failure> {
         if let Some(path) = &self.report {
-            output::write_file(path, &report::page(all))?;
+            output::write_file(path, report::page(all))?;
         }
         let Some(folder) = &self.logs else { return Ok(()) };
         for problem in all.problems(&builtin_names()) {

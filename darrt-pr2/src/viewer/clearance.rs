@@ -76,7 +76,7 @@ pub(super) fn of_steps(acts: &[Act<'_>], robot: &RobotModel, geometry: &Geometry
             Some(ClearanceData {
                 at: data::to(at, 1e3),
                 distance: data::to(clearance.distance, 1e5),
-                bodies: scene.names(pair)?.map(|name| name.to_string()),
+                bodies: scene.names(pair)?.map(ToString::to_string),
                 points: [clearance.first, clearance.second].map(|point| [point.x, point.y, point.z].map(rounded)),
             })
         });

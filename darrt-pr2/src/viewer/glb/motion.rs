@@ -146,7 +146,7 @@ impl Tracks {
                 match joint.kind {
                     JointKindData::Turning => self.note_rotation(*node, now, &pose.rotation),
                     JointKindData::Sliding => {
-                        self.note(*node, Path::Translation, now, pose.translation.vector.as_slice())
+                        self.note(*node, Path::Translation, now, pose.translation.vector.as_slice());
                     }
                 }
             }
