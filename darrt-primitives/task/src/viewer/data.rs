@@ -1,7 +1,7 @@
 //! What the viewer is given: one JSON object, explained for strangers in `docs/viewer-data.md`.
 //!
 //! Metres, radians, the world's floor at z = 0. A pose is `[x, y, z, qx, qy, qz, qw]`. Numbers are rounded to what the eye
-//! can tell ([`rounded`]), so the object is small; plans are judged by their own file, not by this one.
+//! can tell, so the object is small; plans are judged by their own file, not by this one.
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
