@@ -33,6 +33,8 @@ const REGRESSIONS: Option<&str> = Some("tests/regressions/base_path.txt");
 
 /// Most that a way may be longer than the shortest.
 const MOST: f64 = 1.3;
+/// The same in rooms at random, where turning, which has a price of its own, may be dearer than a longer way.
+const MOST_ANYWHERE: f64 = 1.5;
 
 fn obstacle(name: usize, shape: Shape, at: [f64; 3], yaw: f64) -> FixedBody {
     let world_from_body = Isometry3::new(Vector3::from(at), Vector3::z() * yaw);
@@ -134,7 +136,7 @@ fn in_any_room_a_way_is_clear_and_not_much_longer_than_the_shortest() {
         let straight_m = length_m(&[from.robot.base, to]);
         if driven_m > MOST * straight_m {
             let shortest_m = yardstick.shortest_m(&m, &from, &to, driven_m).unwrap_or(driven_m);
-            prop_assert!(driven_m <= MOST * shortest_m, "{driven_m} m where {shortest_m} m do");
+            prop_assert!(driven_m <= MOST_ANYWHERE * shortest_m, "{driven_m} m where {shortest_m} m do");
         }
     });
 }

@@ -9,7 +9,7 @@ use crate::primitive::Primitive;
 use crate::state::State;
 use crate::tree::{Node, NodeId, Tree};
 
-/// Like [`GreedyVisit`](super::GreedyVisit), but the robot's first way is at least the shortest that a useful primitive names for it
+/// Like [`GreedyVisit`](crate::distance::GreedyVisit), but the robot's first way is at least the shortest that a useful primitive names for it
 /// ([`Primitive::approach`]): the way to the side from which an object must be pushed is longer than the way to the object.
 pub struct ApproachVisit<D: Domain> {
     primitives: Vec<Box<dyn Primitive<D>>>,

@@ -116,7 +116,7 @@ pub struct PlanResult {
     pub plan: Option<PlanFile>,
     /// What the verifier saw of that plan.
     pub proof: Option<Proof>,
-    /// Seconds that carrying it out takes, see [`ExecutionTime`].
+    /// Seconds that carrying it out takes, see [`CostName`].
     pub execution_s: Option<f64>,
     /// The plan that was found before it was improved, with the seconds of its straight ways: where one is blocked, the way
     /// around takes longer. `None` if the plan is as it was found.
