@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn bodies_no_model_has_are_never_members() {
         let mut set = BodySet::ALL;
-        let beyond = BodyIndex::new(300);
+        let beyond = BodyIndex::new(600);
         set.insert(beyond);
         assert!(!set.contains(beyond) && set.len() == MAXIMUM_BODIES);
         set.remove(beyond);

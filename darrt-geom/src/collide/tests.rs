@@ -350,7 +350,7 @@ fn there_is_a_limit_on_bodies() {
         builder.add_moving(&ball(&format!("{i}"))).unwrap();
     }
     let message = builder.add_moving(&ball("one more")).unwrap_err().to_string();
-    assert!(message.contains("257") && message.contains("256"), "{message}");
+    assert!(message.contains("513") && message.contains("512"), "{message}");
 }
 
 #[test]

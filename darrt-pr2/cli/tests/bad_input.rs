@@ -87,7 +87,7 @@ fn numbers_are_finite_positive_and_in_range() {
         (BASE, "base = [0.0, -inf, 0.0]", &["`robot.base[1]`", "-inf", "finite"]),
         (BASE, "base = [0.0, 0.0, 1e999]", &["bad.toml:26:19: at `robot.base[2]`", "overflowed"]),
         (BASE, "base = [-3.5, 0.0, 0.0]", &["`robot.base[0]`", "-3.5", "`bounds.base_x` = [-3, 2.5]"]),
-        (BASE, "base = [-0.8, 0.0, 4.0]", &["`robot.base[2]`", "is 4", "[-3.14", "3.14"]),
+        (BASE, "base = [-0.8, 0.0, 90.0]", &["`robot.base[2]`", "is 90", "3.14"]),
         ("torso_m = 0.20", "torso_m = 0.5", &["`robot.torso_m`", "0.5", "[0, 0.33]"]),
         ("size = [0.90, ", "size = [0, ", &["`obstacle[0].shape.box.size[0]`", "is 0", "positive"]),
         ("radius = 0.14", "radius = -0.14", &["`object[0].shape.cylinder.radius`", "-0.14", "positive"]),
@@ -222,7 +222,7 @@ fn robot_descriptions_are_checked() {
     let nested = format!("{}{}", "<a>".repeat(10_000), "</a>".repeat(10_000));
     let cases: [(String, &[&str]); 10] = [
         (String::new(), &["not a robot description"]),
-        ("no XML".to_owned(), &["not a robot description"]),
+        ("no XML".to_owned(), &["text outside the root element"]),
         (URDF.chars().take(2000).collect(), &["not well-formed at byte"]),
         (nested, &["65 deep", "at most 64"]),
         ("<!DOCTYPE a><robot name='a'/>".to_owned(), &["document type"]),
@@ -305,7 +305,7 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
     desk.refused(&["show", "good.toml", "-o", "no/such/folder/a.svg"], 4, &["no/such/folder/a.svg"]);
     desk.refused(&["plan", "good.toml", "--picture", "no/a.svg"], 4, &["no/a.svg"]);
     desk.refused(&["plan", "good.toml", "-o", "kept.html", "--picture", "kept.html"], 2, &["kept.html", "both"]);
-    desk.refused(&["show", "good.toml", "-o", "a.png"], 2, &["a.png", ".svg or .html"]);
+    desk.refused(&["show", "good.toml", "-o", "a.gif"], 2, &["a.gif", ".html, .svg, .png or .glb"]);
 }
 
 #[cfg(unix)]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use darrt_core::goal::Goal as _;
 use darrt_core::observe::accounts::Bucket;
-use darrt_core::primitive::{Infeasible, Instances, PrimitiveId};
+use darrt_core::primitive::{Infeasible, PrimitiveId};
 use darrt_core::random::{Purpose, stream};
 use darrt_core::state::ObjectId;
 use darrt_geom::Body;
@@ -19,7 +19,7 @@ use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::mode::Held;
 use darrt_primitives::primitive::{PICK, PLACE, PUSH};
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
-use nalgebra::Translation3;
+use nalgebra::{Isometry3, Translation3};
 use rand::{Rng, RngExt as _};
 
 use crate::goal_means::Means;
@@ -28,6 +28,10 @@ use crate::problem_file::{Object, ProblemFile, ShapeSpec};
 
 /// How often an action is tried before it is doubted.
 const TRIES: u64 = 32;
+/// How many pushes may bring a rim over an edge.
+const PUSHES: usize = 4;
+/// A push that ends so near to the goal has come to it, metres.
+const NEARLY_M: f64 = 0.02;
 /// What is named as being in the way at most.
 const REASONS: usize = 3;
 /// Objects that may be moved out of the way are lifted so far, metres.
@@ -149,34 +153,26 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         let is_flat = means.pick.is_ok() && lies_flat(self.m, &state, id);
         let no_pick = match &means.pick {
             Ok(()) if is_flat => "it is only taken by its rim, which lies flat".to_owned(),
-            Ok(()) => tried("pick", |rng| pick(self.m, &state, id, rng))?,
+            Ok(()) => tried("pick", |rng| pick(self.m, &state, id, rng).map(drop))?,
             Err(why) => why.clone(),
-        };
-        let mut flat_ends = 0;
-        let towards = |rng: &mut dyn Rng| {
-            let (y, x) = rng.random_range(-std::f64::consts::PI..std::f64::consts::PI).sin_cos();
-            Translation3::new(AWAY_M * x, AWAY_M * y, 0.0) * pose
         };
         let no_push = match &means.push {
-            Ok(()) => tried("push", |rng| {
-                let way = push(self.m, &state, id, &towards(rng), rng)?;
-                let is_still_flat =
-                    is_flat && way.last().is_some_and(|last| lies_flat(self.m, &last.at(self.m, 1.0, &state), id));
-                if is_still_flat && !self.may_be_pushed_there(object) {
-                    flat_ends += 1;
-                    return Err(Infeasible::NoProgress);
+            // One that is pushed about until its rim overhangs an edge is pushed more than once.
+            Ok(()) if is_flat => tried("push its rim over an edge", |rng| {
+                let mut at = state.clone();
+                for _ in 0..PUSHES {
+                    let way = push(self.m, &at, id, &away(rng, &pose), rng)?;
+                    at = way.last().map_or_else(|| at.clone(), |last| last.at(self.m, 1.0, &at));
+                    if !lies_flat(self.m, &at, id) {
+                        return Ok(());
+                    }
                 }
-                Ok(way)
+                Err(Infeasible::NoProgress)
             })?,
+            Ok(()) => tried("push", |rng| push(self.m, &state, id, &away(rng, &pose), rng).map(drop))?,
             Err(why) => why.clone(),
         };
-        Some(match flat_ends {
-            0 => format!("`{name}` can hardly leave where it stands: {no_pick}; {no_push}"),
-            _ => format!(
-                "the rim of `{name}` can hardly be brought over an edge: {no_pick}, and {flat_ends} of {TRIES} pushes towards \
-                 the edges end before: {no_push}"
-            ),
-        })
+        Some(format!("`{name}` can hardly leave where it stands: {no_pick}; {no_push}"))
     }
 
     /// Has the object a goal on what it stands on, to which a push may lead?
@@ -194,17 +190,32 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         let is_known = self.is_ours(PLACE, |contract| contract.hand == HandUse::LetsGo);
         let groups = self.goal.groups().iter();
         let needs_hand = groups.flatten().filter(|goal| goal.object == id).all(|goal| goal.grip == Grip::Released);
-        if !is_known || !needs_hand || means.place.is_err() || self.may_be_pushed_there(object) {
+        if !is_known || !needs_hand || means.place.is_err() {
             return None;
         }
-        let aside = self.alone(id);
-        let no_place = tried("set it down", |rng| {
+        let state = self.alone(id);
+        let target = |rng: &mut dyn Rng| {
             let target = self.goal.sample(self.m, rng).ok_or(Infeasible::OffSupport)?;
-            let target = *target.object(id).ok_or(Infeasible::OffSupport)?;
-            let held = self.held(&aside, id, rng).ok_or(Infeasible::NoHold)?;
-            place(self.m, &held, &target, rng)
+            target.object(id).copied().ok_or(Infeasible::OffSupport)
+        };
+        let no_place = tried("set it down", |rng| {
+            let target = target(rng)?;
+            let held = self.held(&state, id, rng).ok_or(Infeasible::NoHold)?;
+            place(self.m, &held, &target, rng).map(drop)
         })?;
-        Some(format!("`{}` can hardly be set down at its goal: {no_place}", object.name))
+        let name = &object.name;
+        if !self.may_be_pushed_there(object) {
+            return Some(format!("`{name}` can hardly be set down at its goal: {no_place}"));
+        }
+        let no_push = tried("push it there", |rng| {
+            let target = target(rng)?;
+            let way = push(self.m, &state, id, &target, rng)?;
+            let end = way.last().map(|last| last.at(self.m, 1.0, &state));
+            let there = end.as_ref().and_then(|end| end.object(id)).ok_or(Infeasible::NoProgress)?;
+            let off_m = (there.translation.vector - target.translation.vector).norm();
+            if off_m <= NEARLY_M { Ok(()) } else { Err(Infeasible::NoProgress) }
+        })?;
+        Some(format!("`{name}` can hardly come to its goal: {no_place}; {no_push}"))
     }
 
     /// The object in the hand, by one of its grasps.
@@ -222,15 +233,18 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
     }
 }
 
+/// A place far away in some direction.
+fn away(rng: &mut dyn Rng, pose: &Isometry3<f64>) -> Isometry3<f64> {
+    let (y, x) = rng.random_range(-std::f64::consts::PI..std::f64::consts::PI).sin_cos();
+    Translation3::new(AWAY_M * x, AWAY_M * y, 0.0) * pose
+}
+
 /// Tries until it succeeds; what was in the way if it never does.
-fn tried<M: Manipulator>(
-    what: &str,
-    mut action: impl FnMut(&mut dyn Rng) -> Result<Instances<Tabletop<M>>, Infeasible>,
-) -> Option<String> {
+fn tried(what: &str, mut action: impl FnMut(&mut dyn Rng) -> Result<(), Infeasible>) -> Option<String> {
     let mut reasons = BTreeMap::<String, u64>::new();
     for i in 0..TRIES {
         match action(&mut stream(0, 0, i, Purpose::Attempt)) {
-            Ok(_) => return None,
+            Ok(()) => return None,
             Err(why) => *reasons.entry(in_words(&why)).or_default() += 1,
         }
     }
@@ -245,7 +259,7 @@ fn in_words(why: &Infeasible) -> String {
     match why {
         Infeasible::Blocked(blame) => format!("{} meets {}", blame.first, blame.second),
         Infeasible::Unreachable | Infeasible::Limits => "out of the arm's reach".to_owned(),
-        Infeasible::NoProgress => "it ends before".to_owned(),
+        Infeasible::NoProgress => "the pushes end before".to_owned(),
         Infeasible::OffSupport => "too near to an edge, or beside what it may stand on".to_owned(),
         other => Bucket::from(other).heading().to_owned(),
     }

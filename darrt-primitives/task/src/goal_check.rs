@@ -195,7 +195,7 @@ mod tests {
         };
         let text = builtin_text("plate1").unwrap();
         let (head, _) = text.split_once("[[object]]").unwrap();
-        let tins = tin("tin", 0.2, "grasps = [\"side\"]") + &tin("jar", -0.1, second);
+        let tins = tin("can", 0.2, "grasps = [\"side\"]") + &tin("jar", -0.1, second);
         let problem = ProblemFile::from_toml(&format!("{head}{tins}{goals}"), "text").unwrap();
         crate::planning::prepare(&crate::testing::registry(), &problem).map(|_| ())
     }
@@ -207,22 +207,22 @@ mod tests {
     #[test]
     fn goals_that_cannot_hold_together_are_blocked() {
         let grasps = "grasps = [\"side\"]";
-        let message = tins(grasps, &(goal("tin", -0.3) + &goal("jar", -0.32))).unwrap_err().to_string();
+        let message = tins(grasps, &(goal("can", -0.3) + &goal("jar", -0.32))).unwrap_err().to_string();
         assert!(
-            message.contains("the goal of `tin` is blocked") && message.contains("`jar`, which has its goal there"),
+            message.contains("the goal of `can` is blocked") && message.contains("`jar`, which has its goal there"),
             "{message}"
         );
-        tins(grasps, &(goal("tin", -0.3) + &goal("jar", -0.38))).unwrap();
+        tins(grasps, &(goal("can", -0.3) + &goal("jar", -0.38))).unwrap();
         // Each may be off by so much that both have room.
         let loose = |object: &str, y: f64| goal(object, y) + "tolerance_m = 0.03\n";
-        tins(grasps, &(loose("tin", -0.3) + &loose("jar", -0.32))).unwrap();
+        tins(grasps, &(loose("can", -0.3) + &loose("jar", -0.32))).unwrap();
     }
 
     #[test]
     fn a_goal_under_what_never_moves_is_blocked() {
-        let message = tins("grasps = []\npushable = false", &goal("tin", -0.1)).unwrap_err().to_string();
+        let message = tins("grasps = []\npushable = false", &goal("can", -0.1)).unwrap_err().to_string();
         assert!(message.contains("`jar`, which never moves"), "{message}");
-        tins("grasps = []", &goal("tin", -0.1)).unwrap();
+        tins("grasps = []", &goal("can", -0.1)).unwrap();
     }
 
     #[test]

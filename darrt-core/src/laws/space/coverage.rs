@@ -16,7 +16,7 @@ const MOST_AGAIN: usize = 16;
 /// Into how many parts the ranges of two coordinates are cut, to see whether they are drawn one by the other; how many samples
 /// are drawn for that, and how many are expected in a part that must not be empty.
 const PAIR_PARTS: u32 = 10;
-const PAIR_DRAWS: u64 = 2400;
+const PAIR_DRAWS: u64 = 3600;
 const PAIR_EXPECTED: usize = 14;
 /// Coordinates of which pairs are looked at.
 const MOST_PAIRED: usize = 8;

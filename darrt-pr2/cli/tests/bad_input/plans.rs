@@ -20,7 +20,7 @@ fn plan_files_are_checked() {
         ("-0.8,\n    0.0,\n    0.0\n", "-0.8,\n    0.0,\n    9.0\n", 3, &["`robot.base[2]`", "is 9", "3.14"]),
         ("\"torso_m\": 0.2", "\"torso_m\": 9", 3, &["`robot.torso_m`", "is 9", "[0, 0.33]"]),
         ("\"quaternion\": [0.0, 0.0, 0.0, 1.0]", "\"quaternion\": [0.0, 0.0, 0.0, 2.0]", 3, &["plate", "quaternion"]),
-        ("\"version\": 1", "\"version\": 9", 2, &["`version` is 9", "version 1"]),
+        ("\"version\": 2", "\"version\": 9", 2, &["`version` is 9", "version 2"]),
     ];
     for (old, new, exit, parts) in cases {
         assert!(good.contains(old), "the test replaces `{old}`, which is not there");

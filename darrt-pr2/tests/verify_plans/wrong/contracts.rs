@@ -58,7 +58,7 @@ fn no_contract_excuses_what_the_plan_does() {
     // It never lets go of what then stands.
     assert_eq!(lies(plans::carry(), place, |c| c.hand = HandUse::Carries), K::AllowedContact);
     // An empty hand that carries.
-    assert_eq!(lies(plans::carry(), carry, |c| c.hand = HandUse::Empty), K::Mode);
+    assert_eq!(lies(plans::carry(), carry, |c| c.hand = HandUse::Empty), K::Primitive);
     // A transit of the base that the arm does.
     assert_eq!(lies(plans::carry(), &PrimitiveName::BASE_RIGID_TRANSFER, |c| c.moves = MovingPart::Arm), K::Stray);
     // An approach that says it drives.

@@ -56,9 +56,18 @@ fn bounds_nesting_exactly() {
 }
 
 #[test]
+fn there_is_one_root_and_nothing_beside_it() {
+    assert!(check("\u{feff}<?xml version='1.0'?>\n<!-- a --> <r><a/></r>\n<!-- b -->\n").is_ok());
+    for text in ["<r/>and more", "<r></r><r/>", "first <r/>", "<r/>\n<!-- b --> x"] {
+        assert!(matches!(check(text), Err(UrdfError::Malformed { .. })), "{text}");
+    }
+}
+
+#[test]
 fn bounds_size_count_and_tags() {
     assert!(matches!(check(&" ".repeat(20 << 20)), Err(UrdfError::TooLarge { what: "text", .. })));
-    assert!(matches!(check(&"<a/>".repeat(MAX_ELEMENTS + 1)), Err(UrdfError::TooMany { what: "elements", .. })));
+    let many = format!("<r>{}</r>", "<a/>".repeat(MAX_ELEMENTS));
+    assert!(matches!(check(&many), Err(UrdfError::TooMany { what: "elements", .. })));
     let attributes: String = (0..20_000).flat_map(|i| [" a".to_owned(), i.to_string(), "='0'".to_owned()]).collect();
     assert!(matches!(check(&format!("<a{attributes}/>")), Err(UrdfError::TooLarge { what: "tag", .. })));
     let spaces: String = (0..100).flat_map(|i| [" xmlns:a".to_owned(), i.to_string(), "='0'".to_owned()]).collect();

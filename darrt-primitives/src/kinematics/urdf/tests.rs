@@ -184,5 +184,5 @@ fn damaged_texts_never_panic() {
         assert!(poses.iter().all(|p| p.translation.vector.iter().all(|x| x.is_finite())), "{text}");
         let _ = link_bodies(&robot, &tree, &no_meshes);
     }
-    assert!(accepted > 20, "{accepted} of 400");
+    assert!(accepted > 10, "{accepted} of 400");
 }
