@@ -219,7 +219,9 @@ fn refined(way: Way, stops: [Stop; 2], sight: &mut Sight<'_>, looks: usize) -> W
     let looks = looks.min(sight.footprint.looks() + MORE_LOOKS);
     let found = Search::new(sight, &lattice, &bounds, step_rad, stops).below(cost_m).run(usize::MAX, looks);
     let finer = match found {
-        Outcome::Found(finer) => shorten::shorten(sight, &finer).filter(|finer| finer.cost_m() < cost_m),
+        // Neither shall less turning be bought with a longer way.
+        Outcome::Found(finer) => shorten::shorten(sight, &finer)
+            .filter(|finer| finer.cost_m() < cost_m && finer.length_m() <= way.length_m()),
         _ => None,
     };
     finer.unwrap_or(way)

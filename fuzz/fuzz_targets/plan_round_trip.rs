@@ -2,12 +2,12 @@
 #![no_main]
 
 use arbitrary::Arbitrary;
+use darrt_pr2::problems::{builtin, builtin_names};
 use darrt_task::plan_file::{
-    AllowedContact, ContactReason, CostName, Hold, PlanFile, PlanFileError, PlanFormat, PlannerFacts, Pose, SearchName,
-    Step, VERSION, Waypoint,
+    AllowedContact, ContactReason, GradeName, Hold, PlanFile, PlanFileError, PlanFormat, PlannerFacts, Pose,
+    SearchName, Step, VERSION, Waypoint,
 };
 use darrt_task::problem_file::{DistanceName, PrimitiveName, SamplerName};
-use darrt_pr2::problems::{builtin, builtin_names};
 use libfuzzer_sys::fuzz_target;
 
 #[derive(Debug, Clone, Arbitrary)]
@@ -46,8 +46,8 @@ fn pose((position, quaternion): &PoseSketch) -> Pose {
     Pose { position: *position, quaternion: *quaternion }
 }
 
-fn pick<T: Copy>(all: &[T], which: u8) -> T {
-    all[usize::from(which) % all.len()]
+fn pick<T: Clone>(all: &[T], which: u8) -> T {
+    all[usize::from(which) % all.len()].clone()
 }
 
 impl WaypointSketch {
@@ -80,14 +80,19 @@ impl StepSketch {
 }
 
 impl PlanSketch {
-    fn plan(&darrt_pr2::registry(), &self) -> PlanFile {
+    fn plan(&self) -> PlanFile {
         let samplers = [SamplerName::ROBOT_OR_OBJECTS, SamplerName::RANDOM_SUBSET, SamplerName::FULL];
-        let costs = [CostName::Steps, CostName::Travel, CostName::Clearance];
+        let costs = [GradeName::Steps, GradeName::Travel, GradeName::Clearance];
         let distances = [DistanceName::GREEDY, DistanceName::EUCLIDEAN, DistanceName::EXACT_TOUR];
+        let problem = builtin(pick(&builtin_names(), self.problem)).expect("a built-in problem");
+        let contracts = darrt_pr2::registry()
+            .allowed(&problem)
+            .map(|(id, contract)| (id.name().to_owned().into(), contract))
+            .collect();
         PlanFile {
             format: PlanFormat::DarrtPlan,
             version: VERSION,
-            problem: builtin(pick(&builtin_names(), self.problem)).expect("a built-in problem"),
+            problem,
             seed: self.seed,
             planner: PlannerFacts {
                 sampler: pick(&samplers, self.variants[0]),
@@ -99,6 +104,7 @@ impl PlanSketch {
                 restarts: self.counts[1],
                 nodes: self.counts[2],
             },
+            contracts,
             start: self.start.waypoint(),
             steps: self.steps.iter().map(StepSketch::step).collect(),
         }

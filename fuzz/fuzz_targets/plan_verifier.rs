@@ -2,9 +2,9 @@
 #![no_main]
 
 use darrt_fuzz::text::text;
+use darrt_pr2::verify;
 use darrt_task::plan_file::PlanFile;
 use darrt_task::problem_file::ShapeSpec;
-use darrt_pr2::verify;
 use libfuzzer_sys::fuzz_target;
 
 const WAVE: &str = include_str!("../seeds/plan_reader/wave.json");

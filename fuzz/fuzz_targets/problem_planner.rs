@@ -5,9 +5,9 @@ use darrt_core::laws::check_accounts;
 use darrt_core::search::Darrt;
 use darrt_core::shorten::ShortenOptions;
 use darrt_fuzz::text::text;
-use darrt_task::planning::{prepare, strategy};
-use darrt_task::problem_file::{ProblemFile, ShapeSpec};
 use darrt_pr2::problems::builtin_text;
+use darrt_task::planning::{PlanRequest, prepare, strategy};
+use darrt_task::problem_file::{ProblemFile, ShapeSpec};
 use libfuzzer_sys::fuzz_target;
 
 const ITERATIONS: u64 = 4;

@@ -2,8 +2,8 @@
 #![no_main]
 
 use darrt_fuzz::text::text;
-use darrt_task::problem_file::{ProblemFile, ShapeSpec};
 use darrt_pr2::problems::builtin_text;
+use darrt_task::problem_file::{ProblemFile, ShapeSpec};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|data: &[u8]| {

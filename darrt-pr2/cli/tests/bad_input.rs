@@ -87,7 +87,7 @@ fn numbers_are_finite_positive_and_in_range() {
         (BASE, "base = [0.0, -inf, 0.0]", &["`robot.base[1]`", "-inf", "finite"]),
         (BASE, "base = [0.0, 0.0, 1e999]", &["bad.toml:26:19: at `robot.base[2]`", "overflowed"]),
         (BASE, "base = [-3.5, 0.0, 0.0]", &["`robot.base[0]`", "-3.5", "`bounds.base_x` = [-3, 2.5]"]),
-        (BASE, "base = [-0.8, 0.0, 90.0]", &["`robot.base[2]`", "is 90", "3.14"]),
+        (BASE, "base = [-0.8, 0.0, 90.0]", &["`robot.base[2]`", "is 90", "radians"]),
         ("torso_m = 0.20", "torso_m = 0.5", &["`robot.torso_m`", "0.5", "[0, 0.33]"]),
         ("size = [0.90, ", "size = [0, ", &["`obstacle[0].shape.box.size[0]`", "is 0", "positive"]),
         ("radius = 0.14", "radius = -0.14", &["`object[0].shape.cylinder.radius`", "-0.14", "positive"]),

@@ -82,6 +82,15 @@ impl Way {
         self.stops.iter().map(|stop| stop.at).collect()
     }
 
+    /// How far the base drives, metres.
+    pub(super) fn length_m(&self) -> f64 {
+        let far = |pair: &[Stop]| match pair {
+            [a, b] => (b.at[0] - a.at[0]).hypot(b.at[1] - a.at[1]),
+            _ => 0.0,
+        };
+        self.stops.windows(2).map(far).sum()
+    }
+
     /// What all of it costs, metres.
     pub(super) fn cost_m(&self) -> f64 {
         self.costs_m.iter().sum()

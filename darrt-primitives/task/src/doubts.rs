@@ -28,8 +28,8 @@ use crate::problem_file::{Object, ProblemFile, ShapeSpec};
 
 /// How often an action is tried before it is doubted.
 const TRIES: u64 = 32;
-/// How many pushes may bring a rim over an edge.
-const PUSHES: usize = 4;
+/// How many pushes are tried one after the other to bring a rim over an edge.
+const PUSHES: usize = 12;
 /// A push that ends so near to the goal has come to it, metres.
 const NEARLY_M: f64 = 0.02;
 /// What is named as being in the way at most.
@@ -157,22 +157,28 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
             Err(why) => why.clone(),
         };
         let no_push = match &means.push {
-            // One that is pushed about until its rim overhangs an edge is pushed more than once.
-            Ok(()) if is_flat => tried("push its rim over an edge", |rng| {
-                let mut at = state.clone();
-                for _ in 0..PUSHES {
-                    let way = push(self.m, &at, id, &away(rng, &pose), rng)?;
-                    at = way.last().map_or_else(|| at.clone(), |last| last.at(self.m, 1.0, &at));
-                    if !lies_flat(self.m, &at, id) {
-                        return Ok(());
-                    }
-                }
-                Err(Infeasible::NoProgress)
-            })?,
+            Ok(()) if is_flat => tried("push its rim over an edge", |rng| self.push_about(&state, id, rng))?,
             Ok(()) => tried("push", |rng| push(self.m, &state, id, &away(rng, &pose), rng).map(drop))?,
             Err(why) => why.clone(),
         };
         Some(format!("`{name}` can hardly leave where it stands: {no_pick}; {no_push}"))
+    }
+
+    /// Pushes the object this way and that until its rim overhangs an edge.
+    fn push_about(&self, from: &TabletopState<M>, id: ObjectId, rng: &mut dyn Rng) -> Result<(), Infeasible> {
+        let mut at = from.clone();
+        let mut why = Infeasible::NoProgress;
+        for _ in 0..PUSHES {
+            let pose = *at.object(id).ok_or(Infeasible::NoContact)?;
+            match push(self.m, &at, id, &away(rng, &pose), rng) {
+                Ok(way) => at = way.last().map_or_else(|| at.clone(), |last| last.at(self.m, 1.0, &at)),
+                Err(other) => why = other,
+            }
+            if !lies_flat(self.m, &at, id) {
+                return Ok(());
+            }
+        }
+        Err(why)
     }
 
     /// Has the object a goal on what it stands on, to which a push may lead?

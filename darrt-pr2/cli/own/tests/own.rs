@@ -5,7 +5,7 @@
 use darrt_core::budget::Cancel;
 use darrt_core::observe::Silent;
 use darrt_pr2::robot::Pr2;
-use darrt_task::picture::{Extent, Format, Story, draw};
+use darrt_task::picture::{Extent, Story, draw};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::planning::{PlanRequest, PlanResult, plan};
 use darrt_task::problem_file::{CostName, PrimitiveName, ProblemFile, SamplerName};
@@ -32,7 +32,7 @@ fn a_plan_with_a_primitive_of_ones_own_is_found_written_judged_and_drawn() {
         let proof = verify_for::<Pr2>(&read, &VerifyOptions::default()).unwrap();
         assert_eq!(proof.steps, read.steps.len());
         let story = Story::of_plan(&read, &darrt_pr2::facts(&read.problem).unwrap()).unwrap();
-        assert!(draw(&story, Format::Svg, Extent::Whole).contains("Pull"));
+        assert!(draw(&story, Extent::Whole).contains("Pull"));
     }
 }
 

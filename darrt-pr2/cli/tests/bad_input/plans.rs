@@ -17,7 +17,7 @@ fn plan_files_are_checked() {
         ("\"seed\"", "\"seeed\"", 2, &["at `seeed`", "did you mean `seed`?"]),
         ("\"r_elbow_flex_joint\"", "\"r_elbow_joint\"", 3, &["r_elbow"]),
         ("-0.8,\n    0.0,\n", "1e999,\n    0.0,\n", 2, &["`problem.robot.base[0]`", "out of range"]),
-        ("-0.8,\n    0.0,\n    0.0\n", "-0.8,\n    0.0,\n    9.0\n", 3, &["`robot.base[2]`", "is 9", "3.14"]),
+        ("-0.8,\n    0.0,\n    0.0\n", "-0.8,\n    0.0,\n    9.0\n", 3, &["`robot.base[2]`", "is 9", "radians"]),
         ("\"torso_m\": 0.2", "\"torso_m\": 9", 3, &["`robot.torso_m`", "is 9", "[0, 0.33]"]),
         ("\"quaternion\": [0.0, 0.0, 0.0, 1.0]", "\"quaternion\": [0.0, 0.0, 0.0, 2.0]", 3, &["plate", "quaternion"]),
         ("\"version\": 2", "\"version\": 9", 2, &["`version` is 9", "version 2"]),

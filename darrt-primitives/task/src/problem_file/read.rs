@@ -1,5 +1,6 @@
 //! Reading a problem file: guards first, then TOML, then defaults, then validation.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use darrt_primitives::kinematics::limit::wrap_to_pi;
@@ -115,7 +116,10 @@ impl ProblemFile {
         // Yaws are angles: what lies a little beyond half a turn means the other side of it.
         let yaws = [Some(&mut self.robot.base), self.goal.robot.as_mut().and_then(|goal| goal.base.as_mut())];
         for [_, _, yaw] in yaws.into_iter().flatten() {
-            *yaw = wrap_to_pi(*yaw);
+            // What is more than a turn was meant in degrees, and is refused.
+            if yaw.abs() <= TAU {
+                *yaw = wrap_to_pi(*yaw);
+            }
         }
         for corners in self.surfaces.iter_mut().filter_map(|surface| surface.polygon.as_mut()) {
             // A polygon may be written closed.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::names::{object, surface};
-use super::numbers::{length, ordered, within};
+use super::numbers::{angle, length, ordered, within};
 use super::world::in_bounds;
 use crate::problem_file::error::{Flaw, Located};
 use crate::problem_file::{GoalState, GoalTarget, ObjectGoal, ProblemFile, RobotGoal};
@@ -38,6 +38,7 @@ fn check_robot(problem: &ProblemFile, goal: &RobotGoal) -> Result<(), Located> {
     if let Some([x, y, yaw]) = goal.base {
         in_bounds("goal.robot.base[0]", x, "base_x", problem.bounds.base_x)?;
         in_bounds("goal.robot.base[1]", y, "base_y", problem.bounds.base_y)?;
+        angle("goal.robot.base[2]", yaw)?;
         within("goal.robot.base[2]", yaw, -PI, PI)?;
     }
     Ok(())
@@ -47,6 +48,7 @@ fn check_goal(problem: &ProblemFile, goal: &ObjectGoal, key: &str) -> Result<(),
     object(problem, &format!("{key}.object"), &goal.object)?;
     let [least, most] = TOLERANCE_RANGE;
     within(&format!("{key}.tolerance_m"), goal.tolerance_m, least, most)?;
+    goal.yaw.map_or(Ok(()), |yaw| angle(&format!("{key}.yaw"), yaw))?;
     within(&format!("{key}.yaw_tolerance"), goal.yaw_tolerance, least, PI)?;
     if let Some(name) = &goal.on {
         surface(problem, &format!("{key}.on"), name)?;

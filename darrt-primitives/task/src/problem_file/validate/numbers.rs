@@ -1,5 +1,7 @@
 //! Checks of single numbers, and the walk over all of them.
 
+use std::f64::consts::TAU;
+
 use toml::Value;
 
 use crate::problem_file::error::{Flaw, Located};
@@ -43,6 +45,15 @@ pub(super) fn within(key: &str, value: f64, low: f64, high: f64) -> Result<(), L
         return Ok(());
     }
     let bound = format!("in [{low}, {high}]");
+    Err(Flaw::OutOfRange { value, bound }.at(key))
+}
+
+/// `value` is an angle: what is more than a turn was meant in degrees.
+pub(super) fn angle(key: &str, value: f64) -> Result<(), Located> {
+    if value.abs() <= TAU {
+        return Ok(());
+    }
+    let bound = "in radians, at most a full turn of 6.283".to_owned();
     Err(Flaw::OutOfRange { value, bound }.at(key))
 }
 

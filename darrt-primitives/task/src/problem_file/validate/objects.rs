@@ -1,7 +1,7 @@
 //! Rules of the movable objects.
 
 use super::names::surface;
-use super::numbers::{length, motion, positive, within};
+use super::numbers::{angle, length, motion, positive, within};
 use super::world::check_shape;
 use crate::problem_file::error::{Flaw, Located};
 use crate::problem_file::{GraspFamily, LengthRange, Object, ProblemFile, ShapeSpec, Symmetry};
@@ -31,6 +31,7 @@ pub(super) fn check(problem: &ProblemFile) -> Result<(), Located> {
 }
 
 fn check_object(problem: &ProblemFile, object: &Object, key: &str) -> Result<(), Located> {
+    angle(&format!("{key}.yaw"), object.yaw)?;
     check_shape(&object.shape, &format!("{key}.shape"))?;
     positive(&format!("{key}.mass_kg"), object.mass_kg)?;
     within(&format!("{key}.friction.table"), object.friction.table, 0.0, LARGEST_FRICTION)?;

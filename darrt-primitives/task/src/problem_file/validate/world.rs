@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::names::{obstacle, surface};
-use super::numbers::{length, ordered, size, within};
+use super::numbers::{angle, length, ordered, size, within};
 use crate::problem_file::error::{Flaw, Located};
 use crate::problem_file::robot::Robot;
 use crate::problem_file::{Bounds, Obstacle, ProblemFile, ShapeSpec, Surface};
@@ -42,6 +42,7 @@ fn check_robot(robot: &Robot, bounds: &Bounds) -> Result<(), Located> {
     exclusive("robot", &[("model", robot.model.is_some()), ("urdf", robot.urdf.is_some())], false)?;
     in_bounds("robot.base[0]", robot.base[0], "base_x", bounds.base_x)?;
     in_bounds("robot.base[1]", robot.base[1], "base_y", bounds.base_y)?;
+    angle("robot.base[2]", robot.base[2])?;
     within("robot.base[2]", robot.base[2], -PI, PI)?;
     let arms = [
         ("posture", &robot.posture, "joints", &robot.joints),
@@ -60,6 +61,9 @@ fn check_obstacle(problem: &ProblemFile, body: &Obstacle, key: &str) -> Result<(
     length(&format!("{key}.at"), body.at.len(), numbers, numbers)?;
     let turns = [("yaw", body.yaw.is_some()), ("rpy", body.rpy.is_some()), ("quaternion", body.quaternion.is_some())];
     exclusive(key, &turns, false)?;
+    let turned = body.yaw.iter().map(|yaw| ("yaw".to_owned(), *yaw));
+    let rolled = body.rpy.iter().flatten().enumerate().map(|(i, value)| (format!("rpy[{i}]"), *value));
+    turned.chain(rolled).try_for_each(|(name, value)| angle(&format!("{key}.{name}"), value))?;
     if let Some(name) = &body.standing_on {
         surface(problem, &format!("{key}.standing_on"), name)?;
         if body.rpy.is_some() || body.quaternion.is_some() {
