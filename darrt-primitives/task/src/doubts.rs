@@ -249,3 +249,39 @@ fn in_words(why: &Infeasible) -> String {
         other => Bucket::from(other).heading().to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planning::prepare;
+    use crate::problem_file::PrimitiveName;
+    use crate::testing::{builtin, builtin_names, registry};
+
+    fn prepared(edit: impl Fn(&mut ProblemFile)) -> Result<Vec<String>, PlanningError> {
+        let mut problem = builtin("plate1").unwrap();
+        edit(&mut problem);
+        prepare(&registry(), &problem).map(|prepared| prepared.doubts)
+    }
+
+    #[test]
+    fn what_has_a_plan_is_not_doubted() {
+        for name in builtin_names() {
+            let doubts = prepare(&registry(), &builtin(name).unwrap()).unwrap().doubts;
+            assert!(doubts.is_empty(), "{name}: {doubts:?}");
+        }
+    }
+
+    #[test]
+    fn a_rim_that_lies_flat_without_a_push_is_an_error() {
+        let message = prepared(|p| p.primitives.retain(|name| *name != PrimitiveName::PUSH)).unwrap_err().to_string();
+        let why = "its rim does not overhang an edge, and it is not pushed to one: `Push` is not among the primitives";
+        assert!(message.contains("`plate`") && message.ends_with(why), "{message}");
+    }
+
+    #[test]
+    fn a_goal_where_no_hand_comes_is_doubted() {
+        // In the middle of a table a hand at the rim has the table in its way.
+        let doubts = prepared(|p| p.goal.objects[0].at = Some([-2.4, -1.45])).unwrap();
+        assert!(doubts.iter().any(|doubt| doubt.contains("`plate` can hardly be set down at its goal")), "{doubts:?}");
+    }
+}

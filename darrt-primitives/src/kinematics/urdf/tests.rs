@@ -156,6 +156,20 @@ fn files_that_are_none_and_bad_texts_are_named() {
     assert!(message.contains("Cargo.toml: "), "{message}");
 }
 
+#[test]
+fn a_link_that_is_only_seen_is_refused_unless_it_is_listed() {
+    let shape = "<geometry><box size='1 1 1'/></geometry>";
+    let text = format!(
+        "<robot name='r'><link name='a'><visual>{shape}</visual></link><link name='b'><visual>{shape}</visual>\
+         <collision>{shape}</collision></link><joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint></robot>"
+    );
+    let robot = RobotDescription::from_text(&text).unwrap();
+    let message = robot.check_shapes(&[]).unwrap_err().to_string();
+    assert!(message.contains("link \"a\" has a visual and no collision"), "{message}");
+    robot.check_shapes(&["a".to_owned()]).unwrap();
+    assert!(robot.check_shapes(&["c".to_owned()]).unwrap_err().to_string().contains("no link \"c\""));
+}
+
 /// Random damage to a sound text: any answer but a panic. What is still accepted must work in every later step.
 #[test]
 fn damaged_texts_never_panic() {

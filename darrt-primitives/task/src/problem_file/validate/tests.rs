@@ -189,6 +189,25 @@ fn things_stand_on_their_surfaces() {
 }
 
 #[test]
+fn degrees_are_not_taken_for_radians() {
+    for (old, new, key) in [
+        ("at = [0.0, 0.0]\n[[goal", "at = [0.0, 0.0]\nyaw = 45\n[[goal", "`object[0].yaw`"),
+        ("at = [0.0, 0.0, 0.35]", "at = [0.0, 0.0, 0.35]\nrpy = [0, 0, 90]", "`obstacle[0].rpy[2]`"),
+        ("at = [0.2, 0.2]", "at = [0.2, 0.2]\nyaw = -180", "`obstacle[1].yaw`"),
+    ] {
+        refused(old, new, &[key, "radians"]);
+    }
+    refused_more("yaw = 90", &["`goal.object[0].yaw`", "radians"]);
+}
+
+#[test]
+fn addresses_are_no_paths() {
+    let mesh = "shape = { mesh = { file = \"package://cups/cup.stl\" } }";
+    let cup = "shape = { cylinder = { radius = 0.04, height = 0.1 } }";
+    refused(cup, mesh, &["`obstacle[1].shape.mesh.file`", "package://cups/cup.stl", "relative to the folder"]);
+}
+
+#[test]
 fn goals_are_clear() {
     let both = "position = [-1.0, 0.0, 0.9]\non = \"table\"\nat = [0, 0]";
     refused("position = [-1.0, 0.0, 0.9]", both, &["`goal.object[0]`", "either `on`, alone or with one of"]);
