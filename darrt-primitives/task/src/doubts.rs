@@ -26,8 +26,9 @@ use crate::goal_means::Means;
 use crate::planning_error::PlanningError;
 use crate::problem_file::{Object, ProblemFile, ShapeSpec};
 
-/// How often an action is tried before it is doubted.
+/// How often an action is tried before it is doubted; a push, which has one direction that may be right, more often.
 const TRIES: u64 = 32;
+const PUSHES: u64 = 256;
 /// A push that ends so near to the goal has come to it, metres.
 const NEARLY_M: f64 = 0.02;
 /// What is named as being in the way at most.
@@ -36,8 +37,9 @@ const REASONS: usize = 3;
 const ASIDE_M: f64 = 100.0;
 /// A mesh that is wider is doubted, metres.
 const WIDEST_M: f64 = 20.0;
-/// Farther than any surface reaches, metres: towards a place so far away an object is pushed to the edge.
-const AWAY_M: f64 = 20.0;
+/// How far it is tried to push an object, metres.
+const NEAR_M: f64 = 0.1;
+const FAR_M: f64 = 1.5;
 
 /// A problem whose actions are tried.
 pub(crate) struct Outlook<'a, M: Manipulator> {
@@ -150,11 +152,11 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         let name = &object.name;
         let no_pick = match &means.pick {
             Ok(()) if lies_flat(self.m, &state, id) => "it is only taken by its rim, which lies flat".to_owned(),
-            Ok(()) => tried("pick", |rng| pick(self.m, &state, id, rng).map(drop))?,
+            Ok(()) => tried(TRIES, "pick", |rng| pick(self.m, &state, id, rng).map(drop))?,
             Err(why) => why.clone(),
         };
         let no_push = match &means.push {
-            Ok(()) => tried("push", |rng| push(self.m, &state, id, &away(rng, &pose), rng).map(drop))?,
+            Ok(()) => tried(PUSHES, "push", |rng| push(self.m, &state, id, &around(rng, &pose), rng).map(drop))?,
             Err(why) => why.clone(),
         };
         Some(format!("`{name}` can hardly leave where it stands: {no_pick}; {no_push}"))
@@ -183,7 +185,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
             let target = self.goal.sample(self.m, rng).ok_or(Infeasible::OffSupport)?;
             target.object(id).copied().ok_or(Infeasible::OffSupport)
         };
-        let no_place = tried("set it down", |rng| {
+        let no_place = tried(TRIES, "set it down", |rng| {
             let target = target(rng)?;
             let held = self.held(&state, id, rng).ok_or(Infeasible::NoHold)?;
             place(self.m, &held, &target, rng).map(drop)
@@ -192,7 +194,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         if !self.may_be_pushed_there(object) {
             return Some(format!("`{name}` can hardly be set down at its goal: {no_place}"));
         }
-        let no_push = tried("push it there", |rng| {
+        let no_push = tried(PUSHES, "push it there", |rng| {
             let target = target(rng)?;
             let way = push(self.m, &state, id, &target, rng)?;
             let end = way.last().map(|last| last.at(self.m, 1.0, &state));
@@ -218,16 +220,17 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
     }
 }
 
-/// A place far away in some direction.
-fn away(rng: &mut dyn Rng, pose: &Isometry3<f64>) -> Isometry3<f64> {
+/// A place around the object, also beyond the edge of what it stands on: a push to there ends at the edge.
+fn around(rng: &mut dyn Rng, pose: &Isometry3<f64>) -> Isometry3<f64> {
     let (y, x) = rng.random_range(-std::f64::consts::PI..std::f64::consts::PI).sin_cos();
-    Translation3::new(AWAY_M * x, AWAY_M * y, 0.0) * pose
+    let far_m = rng.random_range(NEAR_M..FAR_M);
+    Translation3::new(far_m * x, far_m * y, 0.0) * pose
 }
 
 /// Tries until it succeeds; what was in the way if it never does.
-fn tried(what: &str, mut action: impl FnMut(&mut dyn Rng) -> Result<(), Infeasible>) -> Option<String> {
+fn tried(tries: u64, what: &str, mut action: impl FnMut(&mut dyn Rng) -> Result<(), Infeasible>) -> Option<String> {
     let mut reasons = BTreeMap::<String, u64>::new();
-    for i in 0..TRIES {
+    for i in 0..tries {
         match action(&mut stream(0, 0, i, Purpose::Attempt)) {
             Ok(()) => return None,
             Err(why) => *reasons.entry(in_words(&why)).or_default() += 1,
@@ -237,7 +240,7 @@ fn tried(what: &str, mut action: impl FnMut(&mut dyn Rng) -> Result<(), Infeasib
     reasons.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let reasons: Vec<_> =
         reasons.into_iter().take(REASONS).map(|(reason, count)| format!("{reason} ({count})")).collect();
-    Some(format!("all of {TRIES} tries to {what} fail: {}", reasons.join(", ")))
+    Some(format!("all of {tries} tries to {what} fail: {}", reasons.join(", ")))
 }
 
 fn in_words(why: &Infeasible) -> String {
