@@ -73,7 +73,7 @@ fn arm_transit() {
 
 #[test]
 fn straight_line_arm_transit() {
-    check(&StraightLineArmTransit, Starts::Engaged, 48, None);
+    check(&StraightLineArmTransit, Starts::Engaged, 192, None);
 }
 
 #[test]
