@@ -80,10 +80,14 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         Ok(())
     }
 
-    /// What makes a plan unlikely, in words; empty for most problems.
-    pub(crate) fn doubts(&self) -> Vec<String> {
+    /// What makes a plan unlikely, in words; empty for most problems. `immovable` is [`Outlook::immovable`].
+    pub(crate) fn doubts(&self, immovable: &[ObjectId]) -> Vec<String> {
         let wanted = self.objects().filter(|(id, _)| self.must_move(*id));
-        let actions = wanted.flat_map(|(id, object)| [self.of_leaving(id, object), self.of_arriving(id, object)]);
+        let actions = wanted.flat_map(|(id, object)| {
+            let alone = self.alone(id, immovable);
+            let means = self.means(object);
+            [self.of_leaving(id, &means, &alone), self.of_arriving(id, &means, &alone)]
+        });
         self.of_size().into_iter().chain(actions.flatten()).collect()
     }
 
@@ -127,9 +131,8 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
     }
 
     /// The start, with the objects that may be moved out of the way of `id` out of its way.
-    fn alone(&self, id: ObjectId) -> TabletopState<M> {
+    fn alone(&self, id: ObjectId, immovable: &[ObjectId]) -> TabletopState<M> {
         let mut state = self.start.clone();
-        let immovable = self.immovable();
         for (index, pose) in state.objects.iter_mut().enumerate() {
             let other = ObjectId::new(index);
             if other != id && !immovable.contains(&other) {
@@ -140,64 +143,61 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
     }
 
     /// Can the object leave where it stands?
-    fn of_leaving(&self, id: ObjectId, object: &'a Object) -> Option<String> {
-        let means = self.means(object);
+    fn of_leaving(&self, id: ObjectId, means: &Means<'_>, state: &TabletopState<M>) -> Option<String> {
         let is_known =
             self.is_ours(PICK, |contract| contract.hand == HandUse::Takes) && self.is_ours(PUSH, Contract::slides);
-        let state = self.alone(id);
-        let pose = *state.object(id)?;
         if !is_known {
             return None;
         }
-        let name = &object.name;
+        let pose = *state.object(id)?;
+        let name = &means.object.name;
         let no_pick = match &means.pick {
-            Ok(()) if lies_flat(self.m, &state, id) => "it is only taken by its rim, which lies flat".to_owned(),
-            Ok(()) => tried(TRIES, "pick", |rng| pick(self.m, &state, id, rng).map(drop))?,
+            Ok(()) if lies_flat(self.m, state, id) => "it is only taken by its rim, which lies flat".to_owned(),
+            Ok(()) => tried(TRIES, "pick", |rng| pick(self.m, state, id, rng).map(drop))?,
             Err(why) => why.clone(),
         };
         let no_push = match &means.push {
-            Ok(()) => tried(PUSHES, "push", |rng| push(self.m, &state, id, &around(rng, &pose), rng).map(drop))?,
+            Ok(()) => tried(PUSHES, "push", |rng| push(self.m, state, id, &around(rng, &pose), rng).map(drop))?,
             Err(why) => why.clone(),
         };
         Some(format!("`{name}` can hardly leave where it stands: {no_pick}; {no_push}"))
     }
 
     /// Has the object a goal on what it stands on, to which a push may lead?
-    fn may_be_pushed_there(&self, object: &'a Object) -> bool {
+    fn may_be_pushed_there(&self, means: &Means<'_>) -> bool {
+        let object = means.object;
         let across = self.problem.surfaces_across(object);
         let goals = self.problem.goal.objects.iter().filter(|goal| goal.object == object.name);
         let is_near = |on: &str| on == object.on || across.iter().any(|name| *name == on);
         let mut goals = goals.map(|goal| goal.on.as_deref());
-        self.means(object).push.is_ok() && goals.any(|on| on.is_none_or(is_near))
+        means.push.is_ok() && goals.any(|on| on.is_none_or(is_near))
     }
 
     /// Can the object be set down at its goal?
-    fn of_arriving(&self, id: ObjectId, object: &'a Object) -> Option<String> {
-        let means = self.means(object);
+    fn of_arriving(&self, id: ObjectId, means: &Means<'_>, state: &TabletopState<M>) -> Option<String> {
         let is_known = self.is_ours(PLACE, |contract| contract.hand == HandUse::LetsGo);
         let groups = self.goal.groups().iter();
         let needs_hand = groups.flatten().filter(|goal| goal.object == id).all(|goal| goal.grip == Grip::Released);
         if !is_known || !needs_hand || means.place.is_err() {
             return None;
         }
-        let state = self.alone(id);
         let target = |rng: &mut dyn Rng| {
             let target = self.goal.sample(self.m, rng).ok_or(Infeasible::OffSupport)?;
             target.object(id).copied().ok_or(Infeasible::OffSupport)
         };
         let no_place = tried(TRIES, "set it down", |rng| {
             let target = target(rng)?;
-            let held = self.held(&state, id, rng).ok_or(Infeasible::NoHold)?;
+            let held = self.held(state, id, rng).ok_or(Infeasible::NoHold)?;
             place(self.m, &held, &target, rng).map(drop)
         })?;
-        let name = &object.name;
-        if !self.may_be_pushed_there(object) {
+        let name = &means.object.name;
+        if !self.may_be_pushed_there(means) {
             return Some(format!("`{name}` can hardly be set down at its goal: {no_place}"));
         }
         let no_push = tried(PUSHES, "push it there", |rng| {
             let target = target(rng)?;
-            let way = push(self.m, &state, id, &target, rng)?;
-            let end = way.last().map(|last| last.at(self.m, 1.0, &state));
+            let way = push(self.m, state, id, &target, rng)?;
+            let end = way.last().map(|last| last.at(self.m, 1.0, state));
             let there = end.as_ref().and_then(|end| end.object(id)).ok_or(Infeasible::NoProgress)?;
             let off_m = (there.translation.vector - target.translation.vector).norm();
             if off_m <= NEARLY_M { Ok(()) } else { Err(Infeasible::NoProgress) }

@@ -44,7 +44,7 @@ pub fn check_means(
 
 /// What can be done with one object, each with the reason why not.
 pub(crate) struct Means<'a> {
-    object: &'a Object,
+    pub(crate) object: &'a Object,
     pub(crate) pick: Result<(), String>,
     pub(crate) place: Result<(), String>,
     pub(crate) push: Result<(), String>,

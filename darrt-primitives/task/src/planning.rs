@@ -232,9 +232,10 @@ fn prepare_watched<M: TaskRobot>(
     let Built { world, start, goal, scene, near } = world::build_with(registry, file, robot, arm)?;
     let validity = SceneValidity::new(&world);
     let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal, scene: &scene };
-    crate::goal_check::check_goal(&world, &goal, &scene, &start, &outlook.immovable())?;
+    let immovable = outlook.immovable();
+    crate::goal_check::check_goal(&world, &goal, &scene, &start, &immovable)?;
     outlook.check_rims()?;
-    let doubts = outlook.doubts();
+    let doubts = outlook.doubts(&immovable);
     let facts = Arc::new(M::facts(&file.robot)?);
     let exporter = Arc::new(Exporter::new(file, &facts)?);
     let verifier =

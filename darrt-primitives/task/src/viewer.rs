@@ -22,6 +22,7 @@ use darrt_primitives::kinematics::UrdfError;
 use crate::picture::ink;
 use crate::plan_file::joints::JointFlaw;
 use crate::plan_file::{PlanFile, Waypoint};
+use crate::problem_file::geometry::Geometry;
 use crate::problem_file::{ProblemFile, ProblemFileError};
 use data::ViewerData;
 pub use scene::RobotModel;
@@ -80,7 +81,16 @@ pub enum ViewerError {
 /// # Errors
 /// When something cannot be built, or the start lacks a joint or an object.
 pub fn of_problem(problem: &ProblemFile, start: &Waypoint, robot: &RobotModel) -> Result<ViewerData, ViewerError> {
-    let geometry = problem.geometry()?;
+    still(problem, &problem.geometry()?, start, robot)
+}
+
+/// What the page shows before anything moves.
+fn still(
+    problem: &ProblemFile,
+    geometry: &Geometry,
+    start: &Waypoint,
+    robot: &RobotModel,
+) -> Result<ViewerData, ViewerError> {
     Ok(ViewerData {
         format: data::FORMAT.to_owned(),
         version: data::VERSION,
@@ -88,9 +98,9 @@ pub fn of_problem(problem: &ProblemFile, start: &Waypoint, robot: &RobotModel) -
         description: problem.description.clone(),
         note: String::new(),
         robot: robot.data(),
-        bodies: scene::bodies(problem, &geometry),
-        surfaces: scene::surfaces(&geometry),
-        objects: scene::objects(problem, &geometry),
+        bodies: scene::bodies(problem, geometry),
+        surfaces: scene::surfaces(geometry),
+        objects: scene::objects(problem, geometry),
         start: Moment::read(start, robot, problem, || "start".to_owned())?.data(),
         steps: Vec::new(),
     })
@@ -102,10 +112,11 @@ pub fn of_problem(problem: &ProblemFile, start: &Waypoint, robot: &RobotModel) -
 /// As [`of_problem`], and when a step or a waypoint lacks something.
 pub fn of_plan(plan: &PlanFile, note: &str, robot: &RobotModel) -> Result<ViewerData, ViewerError> {
     let acts = timeline::acts(plan, robot)?;
-    let clearances = clearance::of_steps(&acts, robot, &plan.problem.geometry()?);
+    let geometry = plan.problem.geometry()?;
+    let clearances = clearance::of_steps(&acts, robot, &geometry);
     let steps = acts.iter().zip(clearances).map(|(act, clearance)| data::StepData { clearance, ..act.data(robot) });
     let steps = steps.collect();
-    Ok(ViewerData { note: note.to_owned(), steps, ..of_problem(&plan.problem, &plan.start, robot)? })
+    Ok(ViewerData { note: note.to_owned(), steps, ..still(&plan.problem, &geometry, &plan.start, robot)? })
 }
 
 /// The page: the viewer with data and figure, an SVG file.

@@ -6,7 +6,8 @@ use darrt_geom::Body;
 use darrt_primitives::kinematics::limit::wrap_to_pi;
 use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
 use darrt_primitives::kinematics::{link_bodies, mesh_folders};
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use darrt_primitives::object_space::upright;
+use nalgebra::{Isometry3, Vector3};
 
 use crate::plan_file::JointTable;
 use crate::robot::{RobotError, RobotFacts};
@@ -119,9 +120,9 @@ impl Model {
 }
 
 /// Where a base at x, y and yaw has the robot's root.
-pub(super) fn world_from_base(base: &[f64; 3]) -> Isometry3<f64> {
+pub(crate) fn world_from_base(base: &[f64; 3]) -> Isometry3<f64> {
     let [x, y, yaw] = *base;
-    Isometry3::from_parts(Translation3::new(x, y, 0.0), UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw))
+    upright(Vector3::new(x, y, 0.0), yaw)
 }
 
 /// The variables that move a link, from the link upwards.

@@ -1,11 +1,12 @@
 //! What moves, from waypoint to waypoint.
 
 use darrt_primitives::kinematics::limit::wrap_to_pi;
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::Isometry3;
 
 use super::ViewerError;
 use super::data::{self, HoldData, JointTrack, ObjectTrack, StartData, StepData, rounded};
 use super::scene::RobotModel;
+use crate::picture::model::world_from_base;
 use crate::picture::{self, palette};
 use crate::plan_file::{ContactReason, PlanFile, Step, Waypoint};
 use crate::problem_file::ProblemFile;
@@ -211,10 +212,4 @@ const fn reason(reason: ContactReason) -> &'static str {
 
 fn moves<T: PartialEq>(values: &[T]) -> bool {
     values.windows(2).any(|pair| pair.first() != pair.last())
-}
-
-/// Where a base at x, y and yaw has the robot's root.
-pub(super) fn world_from_base(base: &[f64; 3]) -> Isometry3<f64> {
-    let [x, y, yaw] = *base;
-    Isometry3::from_parts(Translation3::new(x, y, 0.0), UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw))
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use darrt_primitives::kinematics::limit::wrap_to_pi;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
+use crate::picture::model::world_from_base;
 use crate::viewer::data::{JointKindData, LinkData, StepData, ViewerData, pose_of};
-use crate::viewer::timeline::world_from_base;
 
 /// A held object is given this often between two waypoints.
 const HELD_PARTS: u32 = 4;
