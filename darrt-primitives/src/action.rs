@@ -7,7 +7,7 @@
 //! | follow a straight line of the hand | [`mod@line`] |
 //! | retreat from what the hand stands at | [`retreat`] |
 //! | go to a configuration, alone or with an object in the hand | [`travel`] |
-//! | hold the arm so that the base can drive | `fold`, `width` |
+//! | hold the arm so that the base can drive | `fold`, `drive`, `width` |
 //! | find a base and an arm configuration for a hand pose | [`stance`] |
 //! | know how far the hand must travel to push or grasp | [`approach`] |
 //! | push an object, or make it slide with a hand of your own | [`push`], [`mod@slide`] |
@@ -20,6 +20,7 @@ use darrt_core::primitive::{Infeasible, Instances};
 use crate::tabletop::{Tabletop, TabletopState};
 
 pub mod approach;
+mod drive;
 mod fold;
 pub mod line;
 pub mod pick;

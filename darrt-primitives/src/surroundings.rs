@@ -22,11 +22,13 @@ use crate::mode::{Contacts, TouchReason};
 use crate::tabletop::{Movable, Support, TabletopState};
 
 mod known;
+mod load;
 mod margins;
 mod question;
 mod room;
 
 use known::Known;
+pub(crate) use load::Load;
 pub(crate) use margins::Strict;
 use margins::{Keep, UNSEEN_M};
 pub use margins::{NearPair, Strictness};

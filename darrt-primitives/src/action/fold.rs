@@ -5,15 +5,14 @@
 
 use darrt_core::domain::Domain;
 use darrt_core::space::ComponentSpace;
-use darrt_core::space::so2::turn;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 
 use super::Chain;
-use super::stance::Probe;
+use super::drive::Drive;
 use super::width::Widths;
 use crate::manipulator::{Configuration, Manipulator};
-use crate::mode::{Contacts, Held};
+use crate::mode::Held;
 use crate::object_space::upright;
 use crate::tabletop::{Tabletop, TabletopState};
 use crate::tilt::tilt_rad;
@@ -34,10 +33,6 @@ const AHEAD_RAD: f64 = 0.4;
 const CARRIED_M: [f64; 2] = [0.35, 0.75];
 /// How much higher or lower than now an object is carried, metres.
 const CARRIED_RISE_M: f64 = 0.25;
-/// So far a straight drive goes between two looks at what is in the way, metres and radians, but for
-const LOOK_M: f64 = 0.15;
-/// so many parts at most.
-const MOST_LOOKS: f64 = 12.0;
 /// In how many parts a move of the arm is looked at for how far what is held leans.
 const LOOKS: u32 = 8;
 
@@ -76,29 +71,32 @@ pub(super) fn order<M: Manipulator>(
             choices.extend(drawn.find(|arm| !widths.is_wide(arm)).map(|arm| (Order::Through(arm), arm)));
         }
     }
-    let costs = choices.into_iter().map(|(order, arm)| {
-        let cost = cost_m(m, from, target, &arm) * rng.random_range(1.0..1.0 + CHANCE);
-        (widths.is_wide(&arm), cost, order, arm)
-    });
-    let mut costs: Vec<_> = costs.collect();
-    costs.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let mut probe = Probe::new(m, from, from.mode.clone());
-    let mut is_clear = |base: &[f64; 3], arm: &M::Joints, care| {
-        probe.is_clear(&Configuration { base: *base, arm: *arm }, &Contacts::default(), care)
-    };
+    let mut choices: Vec<_> = choices
+        .into_iter()
+        .map(|(order, arm)| (cost_m(m, from, target, &arm) * rng.random_range(1.0..1.0 + CHANCE), order, arm))
+        .collect();
+    choices.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // OPTIMIZATION: how wide the robot is with an arm is asked only of the arms that are looked at.
+    let mut wide: Vec<Option<bool>> = vec![None; choices.len()];
+    let mut drive = Drive::new(m, from, &target.base);
     let stays = |arm: &M::Joints| {
         held.is_none_or(|held| stays_level(m, &held, &from.robot.arm, arm) && stays_level(m, &held, arm, &target.arm))
     };
-    let looks = looks_along(m, from, &target.base);
+    let mut fallback = None;
     for care in [m.surroundings().most_care(), 0] {
         let mut cheapest = None;
-        for (_, _, order, arm) in &costs {
-            let is_fit = is_clear(&from.robot.base, arm, care) && is_clear(&target.base, arm, care) && stays(arm);
-            // As far as a few looks tell the drive need not turn aside.
-            if is_fit && looks.iter().all(|base| is_clear(base, arm, care)) {
-                return *order;
-            }
-            if is_fit {
+        for is_wide in [false, true] {
+            for ((_, order, arm), wide) in choices.iter().zip(&mut wide) {
+                if *wide.get_or_insert_with(|| widths.is_wide(arm)) != is_wide {
+                    continue;
+                }
+                fallback.get_or_insert(*order);
+                if !drive.fits(arm, care) || !stays(arm) {
+                    continue;
+                }
+                if drive.is_straight(care) {
+                    return *order;
+                }
                 cheapest.get_or_insert(*order);
             }
         }
@@ -106,20 +104,7 @@ pub(super) fn order<M: Manipulator>(
             return order;
         }
     }
-    costs.first().map_or(Order::BaseFirst, |(_, _, order, _)| *order)
-}
-
-/// Poses on the straight drive at which it is looked whether something is in the way; none where it would be in the way of
-/// any arm.
-fn looks_along<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>, to: &[f64; 3]) -> Vec<[f64; 3]> {
-    let Configuration { base: [x, y, yaw], arm } = from.robot;
-    let travel_m = (to[0] - x).hypot(to[1] - y) + turn(yaw, to[2]).abs();
-    let parts = (travel_m / LOOK_M).ceil().clamp(1.0, MOST_LOOKS);
-    let shares = (1..).map(|i| f64::from(i) / parts).take_while(|share| *share < 1.0);
-    let looks: Vec<_> = shares.map(|share| m.robot().base().interpolate(&from.robot.base, to, share)).collect();
-    let (around, robot) = (m.surroundings(), m.manipulator());
-    let is_free = looks.iter().all(|base| around.is_base_clear(robot, &Configuration { base: *base, arm }));
-    if is_free { looks } else { Vec::new() }
+    fallback.unwrap_or(Order::BaseFirst)
 }
 
 /// What it costs to drive with the arm at `arm`: the arm's travel to there and from there on, and the drive, dearer with the
