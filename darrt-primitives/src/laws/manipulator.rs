@@ -10,9 +10,11 @@ use crate::manipulator::{Configuration, Manipulator};
 
 mod description;
 mod extremes;
+mod hand;
 mod inverse;
 mod line;
 mod links;
+mod pairs;
 mod reaches;
 mod travel;
 
@@ -89,6 +91,21 @@ pub const TRAVEL_TIGHT: &str =
 pub const STRENGTH: &str =
     "manipulator.strength: grip, payload and push force are positive, and the pads have a length";
 
+/// The palm.
+pub const HAND_FOLLOWS: &str = "manipulator.hand-follows: links of the hand are rigid to the tool";
+/// The arm.
+pub const ARM_MOVES: &str = "manipulator.arm-moves: a link of the arm stands elsewhere when every joint does";
+/// Unit of the gap.
+pub const GAP_METRES: &str =
+    "manipulator.gap-metres: the links of the fingers span the gap, and move apart as it opens";
+/// Unit of the tips.
+pub const TIPS: &str = "manipulator.tips: the links of the fingers reach as far beyond the tool as the tips do";
+/// Unit of the weights.
+pub const WEIGHTS: &str =
+    "manipulator.weights: the weight of a joint is what the hand travels with it, within a factor of thirty";
+/// Missing pairs.
+pub const SELF_PAIRS: &str = "manipulator.self-pairs: two links with three joints between them that overlap in one configuration and not in another are a pair";
+
 /// Durations.
 pub const DURATION: &str = "manipulator.duration: duration_s is finite, 0 from a configuration to itself, more for every joint and coordinate that moves, and not less with something in the hand";
 
@@ -99,6 +116,12 @@ pub const LAWS: &[&str] = &[
     PAIRS,
     TRAVEL_TIGHT,
     STRENGTH,
+    HAND_FOLLOWS,
+    ARM_MOVES,
+    GAP_METRES,
+    TIPS,
+    WEIGHTS,
+    SELF_PAIRS,
     DURATION,
     COUNTS,
     LIMITS,
@@ -175,6 +198,8 @@ pub fn check_manipulator<M: Manipulator>(
         description::check(robot)?;
         let trial = Trial { robot, space: space_of(robot)?, a, b, gaps_m, seed, claims };
         trial.links()?;
+        trial.hand()?;
+        trial.pairs()?;
         trial.inverse()?;
         trial.line()?;
         trial.travel()?;

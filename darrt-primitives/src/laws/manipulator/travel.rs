@@ -113,7 +113,7 @@ fn stays_within(
 }
 
 /// The axes and the diagonals between them, unit vectors.
-fn directions() -> impl Iterator<Item = Vector3<f64>> {
+pub(super) fn directions() -> impl Iterator<Item = Vector3<f64>> {
     let sides = [-1.0, 0.0, 1.0];
     let all = sides.into_iter().flat_map(move |x| sides.map(|y| (x, y)));
     all.flat_map(move |(x, y)| sides.map(|z| Vector3::new(x, y, z))).filter_map(|v| v.try_normalize(0.1))

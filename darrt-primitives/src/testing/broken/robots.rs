@@ -3,12 +3,14 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use darrt_core::laws::Broken;
+use darrt_geom::body::Body;
+use darrt_geom::shape::Shape;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use super::{Case, unusable};
 use crate::laws::manipulator::{
-    BASE_FRAME, BASE_LINKS, COUNTS, FINGERS_FOLLOW, GAP, HAND, LIMITS, LINKS, PURE, RIGID, TRAVEL, TRAVEL_HELD,
-    TRAVEL_LINKS, TRAVEL_MEASURE,
+    ARM_MOVES, BASE_FRAME, BASE_LINKS, COUNTS, FINGERS_FOLLOW, GAP, GAP_METRES, HAND, HAND_FOLLOWS, LIMITS, LINKS,
+    PURE, RIGID, SELF_PAIRS, TIPS, TRAVEL, TRAVEL_HELD, TRAVEL_LINKS, TRAVEL_MEASURE, WEIGHTS,
 };
 use crate::laws::{ManipulatorClaims, check_manipulator};
 use crate::testing::gantry::{Configuration, Gantry, link_travel, motion, poses};
@@ -64,6 +66,26 @@ fn descriptions() -> Vec<Case> {
                 robot.limits[5].lower = upper;
                 robot.limits[5].upper = lower;
             })
+        }),
+        case("weights in centimetres", "a table of another unit", WEIGHTS, || {
+            robot(|robot| robot.weights_m.iter_mut().for_each(|weight| *weight *= 100.0))
+        }),
+        case("long fingers", "the tips are told of fingers that were exchanged for others", TIPS, || {
+            robot(|robot| {
+                for link in &mut robot.links[3..] {
+                    let half = Vector3::new(0.2, 0.01, 0.01);
+                    let longer = Shape::cuboid(half).and_then(|shape| Body::single(&*link.body.name, shape));
+                    link.body = longer.unwrap_or_else(|_| link.body.clone());
+                }
+            })
+        }),
+        case("the pair that was forgotten", "the fingers can reach the wagon, and nobody says so", SELF_PAIRS, || {
+            let mut robot = Gantry::new().map_err(unusable)?;
+            robot.self_pairs.retain(|pair| *pair != (0, 3));
+            // The left finger in the wagon, and well above it.
+            let low = Configuration { arm: [0.0, 0.0, 0.12, 0.0, 0.1, 0.2, 0.3], ..A };
+            let seed = darrt_core::testing::broken::seed();
+            check_manipulator(&robot, [&low, &B], [0.02, 0.08], seed, &ManipulatorClaims::default())
         }),
         case("pairs counted from one", "self pairs by another numbering than the links", LINKS, || {
             robot(|robot| robot.self_pairs = vec![(1, 3), (1, 4), (1, 5)])
@@ -133,6 +155,32 @@ fn links() -> Vec<Case> {
                 })
             },
         ),
+        case("palm on the wrist", "the palm is posed with the joint before the last one", HAND_FOLLOWS, || {
+            robot(|robot| {
+                robot.poses = |q, gap_m| {
+                    let mut all = poses(q, gap_m);
+                    let mut unturned = *q;
+                    unturned.arm[6] = 0.0;
+                    all[2] = poses(&unturned, gap_m)[2];
+                    all
+                };
+            })
+        }),
+        case("wrist that stays", "the link is posed from the joints of the start", ARM_MOVES, || {
+            robot(|robot| {
+                robot.poses = |q, gap_m| {
+                    let mut all = poses(q, gap_m);
+                    all[1] = poses(&Configuration { arm: A.arm, ..*q }, gap_m)[1];
+                    all
+                };
+            })
+        }),
+        case("fingers at rest", "the gap is not handed on to the links", GAP_METRES, || {
+            robot(|robot| robot.poses = |q, _| poses(q, 0.02))
+        }),
+        case("gap in millimetres", "the driver of the gripper speaks millimetres", GAP_METRES, || {
+            robot(|robot| robot.poses = |q, gap_m| poses(q, gap_m / 1000.0))
+        }),
         case("opens the palm", "the gap is added to the palm as well", GAP, || {
             robot(|robot| {
                 robot.poses = |q, gap_m| {
