@@ -8,6 +8,8 @@
 mod carried;
 #[path = "laws/everything.rs"]
 mod everything;
+#[path = "laws/grasps.rs"]
+mod grasps;
 #[path = "laws/primitives.rs"]
 mod primitives;
 #[path = "laws/robot.rs"]

@@ -6,10 +6,13 @@ use darrt_core::random::{Purpose, stream};
 use darrt_geom::body::{Body, Part};
 use darrt_geom::oracle::{PosedBody, nearest};
 use darrt_geom::shape::Shape;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Point3, UnitQuaternion};
 
 use crate::grasp::{Grasp, GraspFamily, GraspKind};
 use crate::manipulator::Hand;
+
+mod kind;
+mod pads;
 
 /// The grid.
 pub const GRID: &str = "grasp.grid: the grid is not empty, and the same on every call";
@@ -25,6 +28,12 @@ pub const APPROACH: &str =
     "grasp.approach: on the straight approach the tool comes nearer to the object, by a quarter of its length at least";
 /// Between the fingers.
 pub const BETWEEN: &str = "grasp.between: something of the object is between the fingers or before their tips";
+/// What is held.
+pub const CONTACT: &str = "grasp.contact: when the hand is closed both pads are at the object, within 5 mm";
+/// Not inside.
+pub const OPEN: &str = "grasp.open: when the hand is open no pad is in the object, but for one within a wall";
+/// The angles.
+pub const KIND: &str = "grasp.kind: the angles that a grasp tells of itself are those of its pose";
 /// Overhang.
 pub const OVERHANG: &str = "grasp.overhang: a family needs an overhang exactly if all its grasps are of the rim";
 /// Seeded.
@@ -33,7 +42,7 @@ pub const SEEDED: &str = "grasp.seeded: the same generator gives the same grasp"
 pub const VARIED: &str = "grasp.varied: a family with several grasps in its grid does not always draw the same";
 
 /// The laws of this file.
-pub const LAWS: &[&str] = &[GRID, GAPS, POSE, REACH, APPROACH, BETWEEN, OVERHANG, SEEDED, VARIED];
+pub const LAWS: &[&str] = &[GRID, GAPS, POSE, REACH, APPROACH, BETWEEN, CONTACT, OPEN, KIND, OVERHANG, SEEDED, VARIED];
 
 /// How many grasps are drawn: a fault in one of a hundred is missed once in a hundred checks.
 const DRAWS: u64 = 512;
@@ -98,13 +107,23 @@ fn one(family: &dyn GraspFamily, body: &Body, hand: &dyn Hand, grasp: &Grasp) ->
     };
     at_most(APPROACH, after + NEARER * grasp.approach_m.wanted_m(), before, 1e-9)?;
     let tips = hand.tip_beyond_tool_m(closed).abs();
-    at_most(BETWEEN, after, tips + NEAR_M, 0.0).map_err(|broken| broken.of("gap to the object, m"))
+    at_most(BETWEEN, after, tips + NEAR_M, 0.0).map_err(|broken| broken.of("gap to the object, m"))?;
+    pads::check(body, hand, grasp)?;
+    kind::check(grasp)
 }
 
 /// Metres from the tool's origin to the object.
 fn distance(body: &Body, object_from_tool: &Isometry3<f64>) -> Option<f64> {
+    distance_of(body, &object_from_tool.translation.vector.into())
+}
+
+/// Metres from a point in the object's frame to the object.
+fn distance_of(body: &Body, point: &Point3<f64>) -> Option<f64> {
     let probe = Body::new("probe", vec![Part::centred(Shape::sphere(PROBE_M).ok()?)]).ok()?;
     let object = PosedBody { body, world_from_body: Isometry3::identity() };
-    let tool = PosedBody { body: &probe, world_from_body: *object_from_tool };
-    nearest(&[object, tool], &|_, _| false).ok()?.map(|found| found.distance)
+    let probe = PosedBody {
+        body: &probe,
+        world_from_body: Isometry3::from_parts(point.coords.into(), UnitQuaternion::identity()),
+    };
+    nearest(&[object, probe], &|_, _| false).ok()?.map(|found| found.distance)
 }

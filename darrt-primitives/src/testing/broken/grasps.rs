@@ -11,9 +11,9 @@ use rand::{Rng, RngExt};
 use super::{Case, unusable};
 use crate::grasp::footprint::Footprint;
 use crate::grasp::overhead::OverheadGrasps;
-use crate::grasp::{Grasp, GraspFamily, Grip};
+use crate::grasp::{Grasp, GraspFamily, GraspKind, Grip};
 use crate::laws::check_grasps;
-use crate::laws::grasp::{APPROACH, BETWEEN, GAPS, GRID, OVERHANG, POSE, REACH, SEEDED, VARIED};
+use crate::laws::grasp::{APPROACH, BETWEEN, CONTACT, GAPS, GRID, KIND, OPEN, OVERHANG, POSE, REACH, SEEDED, VARIED};
 use crate::length_range::LengthRange;
 use crate::testing::gantry::{MAX_GAP_M, TIP_BEYOND_TOOL_M, TIP_HALF_WIDTH_M};
 
@@ -85,9 +85,17 @@ fn moved(grasp: Grasp, by: Isometry3<f64>) -> Grasp {
     Grasp { object_from_tool: grasp.object_from_tool * by, ..grasp }
 }
 
+/// A case about grasps of a tin.
+fn case(name: &'static str, wrong: &'static str, law: &'static str, broken: fn() -> Result<(), Broken>) -> Case {
+    Case { name, wrong, law, broken, honest: || check(|_| {}) }
+}
+
 pub(super) fn cases() -> Vec<Case> {
+    [gaps(), poses()].concat()
+}
+
+fn gaps() -> Vec<Case> {
     static CALLS: AtomicU32 = AtomicU32::new(0);
-    let case = |name, wrong, law, broken| Case { name, wrong, law, broken, honest: || check(|_| {}) };
     vec![
         case("an empty grid", "a selection by a filter that nothing passes", GRID, || {
             check(|family| family.grid = |_| Vec::new())
@@ -107,9 +115,41 @@ pub(super) fn cases() -> Vec<Case> {
         case("opens wider than it can", "the gap of another gripper", GAPS, || {
             drawn(|grasp, _| Grasp { open_gap_m: 0.12, ..grasp })
         }),
+        case("closes on a thinner tin", "the radius where the diameter was wanted", CONTACT, || {
+            drawn(|grasp, _| Grasp { closed_gap_m: 0.5 * grasp.closed_gap_m, ..grasp })
+        }),
+        case("shifted along the opening", "one finger on the tin, the other one in it", CONTACT, || {
+            check(|family| {
+                family.change = |grasp, _| moved(grasp, Isometry3::translation(0.0, 0.02, 0.0));
+                family.reach_m = Some(0.1);
+            })
+        }),
+        case("opens by a hair", "the hand is not in the middle, and opens too little for that", OPEN, || {
+            check(|family| {
+                family.change = |grasp, _| {
+                    let open_gap_m = grasp.closed_gap_m + 0.002;
+                    Grasp { open_gap_m, ..moved(grasp, Isometry3::translation(0.0, 0.004, 0.0)) }
+                };
+                family.reach_m = Some(0.1);
+            })
+        }),
+        case("tells of another azimuth", "degrees where radians were wanted", KIND, || {
+            drawn(|grasp, _| match grasp.kind {
+                GraspKind::Overhead { azimuth } => {
+                    Grasp { kind: GraspKind::Overhead { azimuth: azimuth.to_degrees() }, ..grasp }
+                }
+                _ => grasp,
+            })
+        }),
         case("closes on nothing", "a thickness that was left at 0", GAPS, || {
             drawn(|grasp, _| Grasp { closed_gap_m: 0.0, ..grasp })
         }),
+    ]
+}
+
+fn poses() -> Vec<Case> {
+    static CALLS: AtomicU32 = AtomicU32::new(0);
+    vec![
         case("one in a hundred is no number", "normalises a direction of no length now and then", POSE, || {
             drawn(|grasp, rng| {
                 let is_bad = rng.random_bool(0.02);
@@ -165,7 +205,7 @@ pub(super) fn cases() -> Vec<Case> {
                         open_gap_m: 0.095,
                         closed_gap_m: 0.08,
                         approach_m: Grip::default().approach,
-                        kind: crate::grasp::GraspKind::Overhead { azimuth: 0.0 },
+                        kind: GraspKind::Overhead { azimuth: std::f64::consts::FRAC_PI_2 },
                     }
                 };
             })
