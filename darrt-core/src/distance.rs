@@ -20,6 +20,25 @@ pub use greedy_visit::GreedyVisit;
 /// # Laws
 /// Finite, non-negative, zero when the target is met up to the tolerance of its components; components
 /// that the target leaves open do not count.
+///
+/// # Example
+/// ```
+/// use darrt_core::distance::Distance;
+/// use darrt_core::prelude::*;
+///
+/// /// Objects count, the robot does not.
+/// struct ObjectsOnly;
+///
+/// impl<D: Domain> Distance<D> for ObjectsOnly {
+///     fn distance(&self, m: &D, from: &State<D>, to: &PartialState<D>) -> f64 {
+///         let metres = |(id, target): (ObjectId, _)| {
+///             let space = m.objects().get(id.index())?;
+///             Some(space.distance(from.object(id)?, target))
+///         };
+///         to.objects().filter_map(metres).sum()
+///     }
+/// }
+/// ```
 pub trait Distance<D: Domain>: Send + Sync {
     /// Metres from `from` to the nearest state that meets `to`.
     fn distance(&self, m: &D, from: &State<D>, to: &PartialState<D>) -> f64;

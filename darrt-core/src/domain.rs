@@ -17,7 +17,44 @@ use crate::state::{ComponentId, ComponentSet, ObjectConfig, ObjectId, RobotConfi
 /// in the mode that it was made for.
 ///
 /// # Example
-/// See `testing::puck` (feature `testing`), a disc that pushes and carries pucks.
+/// A cart that pushes crates along one rail. Larger: `testing::puck` (feature `testing`), a disc that pushes and carries.
+/// ```
+/// use darrt_core::prelude::*;
+/// use darrt_core::space::RealBox;
+///
+/// struct Rail {
+///     cart: RealBox<1>,
+///     crates: Vec<RealBox<1>>,
+/// }
+///
+/// impl Domain for Rail {
+///     type Robot = RealBox<1>;
+///     type Object = RealBox<1>;
+///     type Mode = ();
+///     type Contacts = ();
+///
+///     fn robot(&self) -> &RealBox<1> {
+///         &self.cart
+///     }
+///
+///     fn objects(&self) -> &[RealBox<1>] {
+///         &self.crates
+///     }
+///
+///     fn reach(&self, cart: &[f64; 1], _: ObjectId, at: &[f64; 1]) -> f64 {
+///         (at[0] - cart[0]).abs()
+///     }
+///
+///     fn hop(&self, (_, from): (ObjectId, &[f64; 1]), (_, to): (ObjectId, &[f64; 1])) -> f64 {
+///         (to[0] - from[0]).abs()
+///     }
+/// }
+///
+/// let space = RealBox::new([0.0], [10.0])?;
+/// let rail = Rail { cart: space.clone(), crates: vec![space] };
+/// assert_eq!(rail.reach(&[2.0], ObjectId::new(0), &[5.0]), 3.0);
+/// # Ok::<(), darrt_core::error::Error>(())
+/// ```
 pub trait Domain: Sized + Send + Sync + 'static {
     /// Space of the robot R.
     type Robot: ComponentSpace;

@@ -18,6 +18,28 @@ pub use region::Region;
 ///
 /// # Law
 /// A state that meets a sample, in a mode that the goal accepts, satisfies the goal.
+///
+/// # Example
+/// ```
+/// use darrt_core::prelude::*;
+/// use rand::Rng;
+///
+/// /// One object where it should be, within the tolerance of its space, and nothing in the hand.
+/// struct Delivered<D: Domain> {
+///     target: PartialState<D>,
+///     empty_handed: D::Mode,
+/// }
+///
+/// impl<D: Domain> Goal<D> for Delivered<D> {
+///     fn is_satisfied(&self, m: &D, state: &State<D>) -> bool {
+///         state.mode == self.empty_handed && self.target.is_met(m, state)
+///     }
+///
+///     fn sample(&self, _: &D, _: &mut dyn Rng) -> Option<PartialState<D>> {
+///         Some(self.target.clone())
+///     }
+/// }
+/// ```
 pub trait Goal<D: Domain>: Send + Sync {
     /// Is `state` in the goal set?
     fn is_satisfied(&self, m: &D, state: &State<D>) -> bool;

@@ -24,6 +24,29 @@ pub use waypoints::Waypoints;
 ///   only at these ends: it is constant over the open interval.
 /// - No point of any component moves farther than `length() * |t2 - t1|` between `t1` and `t2`. This is
 ///   what lets a validity check prove that a motion is free between two samples.
+///
+/// # Example
+/// ```
+/// use darrt_core::prelude::*;
+///
+/// /// Nothing moves, for instance while a gripper closes.
+/// struct Rest<D: Domain>(State<D>);
+///
+/// impl<D: Domain> Motion<D> for Rest<D> {
+///     fn length(&self) -> f64 {
+///         0.0
+///     }
+///
+///     fn at_into(&self, _: &D, _: f64, out: &mut State<D>) {
+///         out.clone_from(&self.0);
+///     }
+/// }
+/// # impl<D: Domain> std::fmt::Debug for Rest<D> {
+/// #     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+/// #         f.write_str("Rest")
+/// #     }
+/// # }
+/// ```
 pub trait Motion<D: Domain>: Send + Sync + Debug {
     /// Metres: a bound on how far any point of any component travels over the whole motion.
     fn length(&self) -> f64;

@@ -61,6 +61,25 @@ pub enum Event<'a> {
 }
 
 /// Receives events. Returning `Break` stops the planner as if it had been cancelled.
+///
+/// # Example
+/// ```
+/// use std::ops::ControlFlow;
+///
+/// use darrt_core::observe::{Event, Observer};
+///
+/// /// Stops once the tree has a million nodes.
+/// struct Bounded;
+///
+/// impl Observer for Bounded {
+///     fn on_event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+///         match event {
+///             Event::Iteration { nodes: 1_000_000.., .. } => ControlFlow::Break(()),
+///             _ => ControlFlow::Continue(()),
+///         }
+///     }
+/// }
+/// ```
 pub trait Observer: Send {
     /// Called from the thread on which the event happens, one call at a time.
     fn on_event(&mut self, event: &Event<'_>) -> ControlFlow<()>;

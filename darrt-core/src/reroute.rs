@@ -24,6 +24,37 @@ pub enum NoWay {
 /// # Laws
 /// The result starts at `from` and ends where `instance` ends, bit for bit; it moves the same components and touches
 /// nothing more. Pure but for `rng`.
+///
+/// # Example
+/// ```
+/// use darrt_core::prelude::*;
+/// use darrt_core::reroute::{NoWay, Reroute};
+/// use rand::Rng;
+///
+/// /// Another one's ways around, but never for an instance that names an object.
+/// struct Alone<R>(R);
+///
+/// impl<D: Domain, R: Reroute<D>> Reroute<D> for Alone<R> {
+///     fn is_free_to_turn(&self, m: &D, instance: &Instance<D>) -> bool {
+///         instance.object.is_none() && self.0.is_free_to_turn(m, instance)
+///     }
+///
+///     fn reroute(
+///         &self,
+///         m: &D,
+///         validity: &dyn Validity<D>,
+///         care: usize,
+///         instance: &Instance<D>,
+///         from: &State<D>,
+///         rng: &mut dyn Rng,
+///     ) -> Result<Instance<D>, NoWay> {
+///         if !self.is_free_to_turn(m, instance) {
+///             return Err(NoWay::WithAnyCare);
+///         }
+///         self.0.reroute(m, validity, care, instance, from, rng)
+///     }
+/// }
+/// ```
 pub trait Reroute<D: Domain>: Send + Sync {
     /// May this instance go any way between its ends? A transit may; a push, an approach or a pick may not.
     fn is_free_to_turn(&self, m: &D, instance: &Instance<D>) -> bool;

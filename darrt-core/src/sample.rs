@@ -24,6 +24,28 @@ pub use robot_or_objects::RobotOrObjects;
 ///
 /// # Laws
 /// Pure but for `rng`, and for what it has learnt: the same generator gives the same sample.
+///
+/// # Example
+/// ```
+/// use darrt_core::prelude::*;
+/// use darrt_core::sample::Sampler;
+/// use rand::{Rng, RngExt};
+///
+/// /// One object somewhere, and nothing else: the robot may be anywhere.
+/// struct OneObject;
+///
+/// impl<D: Domain> Sampler<D> for OneObject {
+///     fn sample(&self, m: &D, _: &dyn Goal<D>, rng: &mut dyn Rng) -> PartialState<D> {
+///         let anywhere = PartialState::anywhere(m);
+///         if m.objects().is_empty() {
+///             return anywhere;
+///         }
+///         let index = rng.random_range(0..m.objects().len());
+///         let at = m.objects()[index].sample(rng);
+///         anywhere.with_object(ObjectId::new(index), at)
+///     }
+/// }
+/// ```
 pub trait Sampler<D: Domain>: Send + Sync {
     /// A target; every named component lies in its space.
     fn sample(&self, m: &D, goal: &dyn Goal<D>, rng: &mut dyn Rng) -> PartialState<D>;

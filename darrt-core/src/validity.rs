@@ -90,6 +90,39 @@ impl FreePrefix {
 /// - `blame` names bodies that really touch (or come nearer than the stated clearance).
 /// - Enlarging an obstacle never makes an invalid state valid.
 /// - What is free with more care is free with less; a care of 0 are the rules.
+///
+/// # Example
+/// ```
+/// use darrt_core::prelude::*;
+///
+/// /// The robot keeps within its space; states are looked at every centimetre.
+/// struct KeepsIn;
+///
+/// impl<D: Domain> Validity<D> for KeepsIn {
+///     fn check(&self, m: &D, state: &State<D>, _: &D::Contacts) -> Result<(), Blame> {
+///         if m.robot().contains(&state.robot) {
+///             return Ok(());
+///         }
+///         let [first, second] = ["robot", "its limits"].map(Into::into);
+///         Err(Blame { kind: BlockKind::Limits, first, second, place: [0.0; 3] })
+///     }
+///
+///     fn free_prefix(&self, m: &D, instance: &Instance<D>, from: &State<D>) -> FreePrefix {
+///         let steps = (instance.motion.length() / 0.01).ceil().max(1.0);
+///         let mut state = from.clone();
+///         let mut free = 0.0;
+///         for i in 0..=steps as u32 {
+///             let t = f64::from(i) / steps;
+///             instance.motion.at_into(m, t, &mut state);
+///             match self.check(m, &state, &instance.contacts) {
+///                 Ok(()) => free = t,
+///                 Err(blame) => return FreePrefix::blocked(free, blame),
+///             }
+///         }
+///         FreePrefix::FREE
+///     }
+/// }
+/// ```
 pub trait Validity<D: Domain>: Send + Sync {
     /// Is one state valid when `contacts` may touch?
     ///

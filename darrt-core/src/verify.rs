@@ -42,6 +42,30 @@ pub struct Verified {
 }
 
 /// Judges plans, independently of the planner and of the primitives.
+///
+/// # Example
+/// ```
+/// use darrt_core::plan::Plan;
+/// use darrt_core::prelude::*;
+/// use darrt_core::verify::{Refusal, Verified, Verifier};
+///
+/// /// Another verifier's verdict, and no more than so many steps.
+/// struct Short<V> {
+///     inner: V,
+///     steps: usize,
+/// }
+///
+/// impl<D: Domain, V: Verifier<D>> Verifier<D> for Short<V> {
+///     fn verify(&self, m: &D, start: &State<D>, goal: &dyn Goal<D>, plan: &Plan<D>) -> Result<Verified, Refusal> {
+///         let found = plan.steps().len();
+///         if found > self.steps {
+///             let reason = format!("has {found} steps, {} are allowed", self.steps);
+///             return Err(Refusal { step: None, at: 0.0, reason });
+///         }
+///         self.inner.verify(m, start, goal, plan)
+///     }
+/// }
+/// ```
 pub trait Verifier<D: Domain>: Send + Sync {
     /// Accepts, and says what it measured, or refuses. One that takes long should give up, with any refusal, when the search is
     /// cancelled.

@@ -70,8 +70,9 @@ fn go<M: Manipulator>(
     chain.push(m, instance);
 }
 
-/// An instance in which the robot passes through `waypoints` in constant `mode`, with what it holds.
-pub(super) fn carry<M: Manipulator>(
+/// An instance that begins where `chain` ends and in which the robot passes through `waypoints` in constant `mode`, with what
+/// that holds; straight in base and joints between them. It may be run backwards, and nothing but `contacts` may touch.
+pub fn carry<M: Manipulator>(
     m: &Tabletop<M>,
     chain: &Chain<M>,
     waypoints: &[Waypoint<M::Joints>],
