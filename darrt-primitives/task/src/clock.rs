@@ -9,12 +9,14 @@
 //! | which pieces does a step have, how fast is each? | `build`, `pace` |
 //! | where is the robot at a time, and what happens besides? | [`timed`] |
 //! | is a clock in a file one? | `check` |
+//! | how far may corners be rounded? | `accepted` |
 //!
 //! No decision is taken by the name of a primitive: what is slow, and where the robot waits, follows from the contracts in the
 //! plan file. `docs/timed-plan.md` explains it to readers without this code.
 
+mod accepted;
 mod build;
-mod check;
+pub(crate) mod check;
 pub mod limits;
 mod pace;
 pub(crate) mod profile;
@@ -28,6 +30,7 @@ use crate::plan_file::PlanFile;
 use crate::plan_file::timing::Timing;
 use crate::robot::RobotFacts;
 
+pub use accepted::{NoClock, give_clock};
 pub use limits::{Bounds, MotionLimits};
 pub use timed::{Event, EventKind, Moment, TimedPlan};
 

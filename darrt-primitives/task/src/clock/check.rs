@@ -13,7 +13,7 @@ const LONGEST_S: f64 = 1e7;
 
 /// # Errors
 /// [`ClockError::Timing`] with the first place at fault.
-pub(super) fn check(plan: &PlanFile, timing: &Timing) -> Result<(), ClockError> {
+pub(crate) fn check(plan: &PlanFile, timing: &Timing) -> Result<(), ClockError> {
     let fault = |place: String, why: String| Err(ClockError::Timing { place, why });
     let (found, expected) = (timing.steps.len(), plan.steps.len());
     if found != expected {
