@@ -31,6 +31,8 @@ Examples:
   darrt plan plate3                   solve one; writes plate3.plan.json and plate3.html
   darrt show plate3.plan.json         draw a plan again
   darrt check plate3.plan.json        judge a plan, for example one edited by hand
+  darrt export plate3.plan.json --to json
+                                      the plan on its clock, for a controller
   darrt bench                         the paper's table: every problem, ten seeds
   darrt problems --print plate3 > mine.toml
                                       copy a problem, edit it, then: darrt plan mine.toml
@@ -54,6 +56,8 @@ pub enum Command {
     Problems(ProblemsOptions),
     /// Draw a problem or a plan
     Show(ShowOptions),
+    /// Write a plan on its clock for controllers and other programs: joint trajectories, tables, recordings
+    Export(ExportOptions),
     /// Print the JSON Schema of problem files or plan files
     Schema(SchemaOptions),
     /// Make problems like a given one: places, sizes and heights drawn at random
@@ -194,6 +198,52 @@ pub struct ShowOptions {
     pub overview: bool,
 }
 
+const EXPORT_EXAMPLES: &str = "\
+Examples:
+  darrt export plate3.plan.json --to json           trajectories by group: arm, base, gripper
+  darrt export plate3.plan.json --to mcap           a recording to look at in Foxglove
+  darrt export old.plan.json --to plan -o new.plan.json
+                                                    a plan without a clock gets one
+
+The plan is judged first; what is refused is not exported (exit code 3).";
+
+/// Options of `darrt export`.
+#[derive(Debug, Args)]
+#[command(after_help = EXPORT_EXAMPLES)]
+pub struct ExportOptions {
+    /// The plan file
+    pub plan: PathBuf,
+    /// What to write
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub to: ExportFormat,
+    /// Write it here [default: beside the plan, with an ending of its own]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Samples per second, 1 to 1000; there are more where the motion changes
+    #[arg(long, default_value_t = 50.0, value_name = "HZ", value_parser = rate, allow_hyphen_values = true)]
+    pub rate: f64,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// What `darrt export` writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ExportFormat {
+    /// The plan file with its clock
+    Plan,
+    /// Trajectories by group of joints, commands to the hand, sensing points: fields as in `trajectory_msgs`
+    Json,
+    /// The same as YAML
+    Yaml,
+    /// One `moveit_msgs/RobotTrajectory` as JSON
+    Moveit,
+    /// A table: one line per sample
+    Csv,
+    /// A recording: joint states, frames and events
+    Mcap,
+}
+
 /// Options of `darrt schema`.
 #[derive(Debug, Args)]
 pub struct SchemaOptions {
@@ -322,6 +372,12 @@ fn seeds(text: &str) -> Result<Range<u64>, String> {
     };
     let range = range.filter(|range: &Range<u64>| !range.is_empty());
     range.ok_or_else(|| "must be a count above 0, or A..B with A below B".to_owned())
+}
+
+/// Samples per second.
+fn rate(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|value: &f64| (1.0..=1000.0).contains(value));
+    value.ok_or_else(|| "must be a number from 1 to 1000".to_owned())
 }
 
 /// A positive time in seconds.

@@ -8,7 +8,7 @@
 //! | is it hopeless? | [`goal_means`], [`goal_check`], `doubts` |
 //! | how is it planned? | [`world`] (with the private `supports`), [`planning`] |
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
-//! | when is the robot where? | [`clock`] |
+//! | when is the robot where? | [`clock`], and for controllers [`trajectory`] |
 //! | where does the time go? | [`profile`] |
 //! | how are files read, written and described? | [`text_file`], [`text`], [`schema`] |
 //! | what does a person see? | [`picture`], [`viewer`] |
@@ -39,6 +39,7 @@ mod supports;
 mod testing;
 pub mod text;
 pub mod text_file;
+pub mod trajectory;
 pub mod verify;
 pub mod viewer;
 pub mod world;

@@ -115,6 +115,21 @@ pub(crate) fn progress(profile: &[[f64; 2]], t: f64) -> Progress {
     Progress { speed: 0.0, acceleration: 0.0, ..here }
 }
 
+/// When a profile from rest has gone this length, seconds; when it ends for more than it goes.
+pub(crate) fn time_of(profile: &[[f64; 2]], length: f64) -> f64 {
+    let mut here = Progress::default();
+    let mut begin = 0.0;
+    for &[seconds, jerk] in profile {
+        if here.after(seconds, jerk).length >= length {
+            // The first time: lengths never shrink.
+            return begin + seconds - bisect(0.0, seconds, |left| here.after(seconds - left, jerk).length >= length);
+        }
+        here = here.after(seconds, jerk);
+        begin += seconds;
+    }
+    begin
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -164,6 +179,16 @@ mod tests {
         let sharp = Bounds::new(0.5, 2.0, 1e9);
         assert!((seconds(0.0, 0.0, 1.0, &sharp) - 2.25).abs() < 1e-6);
         assert!((reachable(0.0, 1.0, &Bounds::new(10.0, 2.0, 1e9)) - 2.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn times_and_lengths_are_inverse() {
+        let profile = between(0.0, 0.0, 3.0, &Bounds::new(1.0, 2.0, 5.0));
+        for i in 0..=30 {
+            let length = f64::from(i) * 0.1;
+            assert!((progress(&profile, time_of(&profile, length)).length - length).abs() < 1e-9, "{length}");
+        }
+        assert_eq!(time_of(&profile, 4.0), profile.iter().map(|[seconds, _]| seconds).sum::<f64>());
     }
 
     #[test]

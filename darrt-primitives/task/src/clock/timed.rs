@@ -1,15 +1,20 @@
 //! A plan on its clock: where the robot is at any time.
 
-use darrt_primitives::contract::HandUse;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use super::profile::{Progress, progress};
+use darrt_primitives::contract::HandUse;
+use darrt_primitives::kinematics::KinematicTree;
+use nalgebra::Isometry3;
+
+use super::build::world_from_base;
+use super::profile::{self, Progress, progress};
 use super::track::{BASE, Body, Track};
 use super::way::Way;
 use super::{ClockError, check};
 use crate::plan_file::timing::Timing;
 use crate::plan_file::{JointTable, PlanFile};
 use crate::robot::RobotFacts;
-use darrt_primitives::kinematics::KinematicTree;
 
 /// A plan with its clock, ready to be asked where the robot is.
 #[derive(Debug)]
@@ -209,6 +214,70 @@ impl TimedPlan {
         }
     }
 
+    /// Where the links of the robot are in the world at a moment, by link of [`TimedPlan::tree`].
+    pub fn links(&self, moment: &Moment) -> Vec<Isometry3<f64>> {
+        let mut links = vec![Isometry3::identity(); self.body.tree.link_count()];
+        let [x, y, yaw] = moment.base;
+        let written = self.body.tree.forward(&moment.joints, &world_from_base(&[x, y, yaw]), &mut links);
+        // The lengths are the tree's own.
+        debug_assert!(written.is_ok(), "{written:?}");
+        links
+    }
+
+    /// Where the plan has the objects at a moment: in the hand, pushed along, or at rest.
+    pub fn objects(&self, moment: &Moment) -> BTreeMap<Arc<str>, Isometry3<f64>> {
+        let Some(leg) = self.track.legs.get(moment.step) else { return BTreeMap::new() };
+        let below = moment.waypoint.floor().max(0.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index, as it was made")]
+        let index = below as usize;
+        let Some(from) = leg.objects.get(index) else { return BTreeMap::new() };
+        let to = leg.objects.get(index + 1).unwrap_or(from);
+        let share = moment.waypoint - below;
+        let poses = from.iter().zip(to.values()).map(|((name, from), to)| {
+            let from: Isometry3<f64> = (*from).into();
+            (Arc::clone(name), from.lerp_slerp(&(*to).into(), share))
+        });
+        let mut poses: BTreeMap<_, _> = poses.collect();
+        if let Some((object, tool_from_object)) = &leg.holds
+            && let Some(pose) = poses.get_mut(object.name.as_str())
+        {
+            *pose = self.links(moment).get(self.body.tool).copied().unwrap_or_default() * tool_from_object;
+        }
+        poses
+    }
+
+    /// When the robot passes each waypoint of a step, seconds from the beginning of the step; it stands at the first at 0. `None`
+    /// if there is no such step.
+    pub fn waypoint_times_s(&self, step: usize) -> Option<Vec<f64>> {
+        let begin_s = self.step_start_s(step)?;
+        let points = &self.track.legs.get(step)?.points;
+        let mut times = vec![0.0; points.len()];
+        for phase in self.phases.iter().filter(|phase| phase.step == step) {
+            for (line, pair) in phase.knots.windows(2).enumerate() {
+                let (&[from, to], Some(mark), Some(length)) =
+                    (pair, phase.way.marks().get(line), phase.way.lengths().get(line))
+                else {
+                    continue;
+                };
+                let (a, b) = (points.get(from)?, points.get(to)?);
+                for at in from + 1..=to {
+                    let share = if at == to { 1.0 } else { share(points.get(at)?, a, b) };
+                    let seconds = profile::time_of(&phase.profile, mark + share * length);
+                    *times.get_mut(at)? = phase.moves_s + seconds - begin_s;
+                }
+            }
+        }
+        let end_s = self.step_start_s(step + 1)? - begin_s;
+        *times.last_mut()? = end_s;
+        let mut last = 0.0_f64;
+        for time in &mut times {
+            // Rounding apart they grow anyway; waypoints of a robot that stands are passed at once.
+            last = last.max(*time);
+            *time = last;
+        }
+        Some(times)
+    }
+
     /// Times between which nothing but time passes and speed changes evenly: where phases begin, move, stop and end, and where
     /// the pieces of their profiles meet. In order, each once.
     pub fn marks_s(&self) -> Vec<f64> {
@@ -234,8 +303,9 @@ impl TimedPlan {
             let Some(begin_s) = self.step_start_s(step) else { continue };
             let before = step.checked_sub(1).and_then(|before| self.track.legs.get(before));
             let has_driven = before.is_some_and(|leg| leg.contract.drives());
-            let touches = leg.contract.fingers_touch && !leg.contract.begins_holding();
-            let touched = before.is_some_and(|leg| leg.contract.fingers_touch);
+            let sets_down = leg.contract.hand == HandUse::LetsGo;
+            let touches = sets_down || (leg.contract.fingers_touch && !leg.contract.begins_holding());
+            let touched = !sets_down && before.is_some_and(|leg| leg.contract.fingers_touch);
             if has_driven || (touches && !touched) {
                 events.push(Event { time_s: begin_s, step, kind: EventKind::Sense });
             }
@@ -249,6 +319,12 @@ impl TimedPlan {
         }
         events
     }
+}
+
+/// What part of the line from `a` to `b` is gone at a point on it.
+fn share(point: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    let farthest = a.iter().zip(b).zip(point).max_by(|((a, b), _), ((c, d), _)| (*b - *a).abs().total_cmp(&(*d - *c).abs()));
+    farthest.map_or(0.0, |((a, b), point)| if a == b { 0.0 } else { ((point - a) / (b - a)).clamp(0.0, 1.0) })
 }
 
 fn base(point: &[f64]) -> [f64; 3] {

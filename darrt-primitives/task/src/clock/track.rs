@@ -3,7 +3,9 @@
 //! Yaw and continuous joints are unwound over the whole plan, so that what lies between two points is the straight line between
 //! them.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use darrt_primitives::contract::Contract;
 use darrt_primitives::kinematics::KinematicTree;
@@ -11,7 +13,7 @@ use darrt_primitives::kinematics::urdf::JointKind;
 use nalgebra::Isometry3;
 
 use super::ClockError;
-use crate::plan_file::{JointTable, PlanFile, Waypoint};
+use crate::plan_file::{JointTable, PlanFile, Pose, Waypoint};
 use crate::problem_file::Object;
 use crate::robot::RobotFacts;
 
@@ -84,6 +86,8 @@ pub(crate) struct Leg {
     pub(crate) contract: Contract,
     /// By waypoint.
     pub(crate) points: Vec<Vec<f64>>,
+    /// By waypoint: where the objects are.
+    pub(crate) objects: Vec<BTreeMap<Arc<str>, Pose>>,
     /// The object in the hand, and its pose in the frame of the tool.
     pub(crate) holds: Option<(Object, Isometry3<f64>)>,
     /// The object that slides.
@@ -125,7 +129,8 @@ impl Track {
             }
             let holds = step.holds.as_ref().map(|hold| Ok((object(&hold.object)?, hold.tool_from_object.into())));
             let pushes = step.pushes.as_ref().map(object);
-            legs.push(Leg { contract, points, holds: holds.transpose()?, pushes: pushes.transpose()? });
+            let objects = step.waypoints.iter().map(|waypoint| waypoint.objects.clone()).collect();
+            legs.push(Leg { contract, points, objects, holds: holds.transpose()?, pushes: pushes.transpose()? });
         }
         Ok(Self { start, legs })
     }

@@ -26,6 +26,10 @@ pub(super) fn points(step: &Step, robot: &Robot) -> Result<Vec<Vec<f64>>, String
     Ok(points)
 }
 
+/// So near to its ends, as a part of the whole way, a corner is taken for straight: the curve there differs from the line by the
+/// cube of that, and rounding must not decide whether the jerk before or that in the corner counts.
+const EDGE: f64 = 1e-9;
+
 /// Velocity, acceleration and jerk of all coordinates.
 #[derive(Debug)]
 pub(super) struct Rates {
@@ -80,7 +84,7 @@ impl<'a> Curve<'a> {
     fn part(&self, gone: f64) -> Part {
         for knot in 1..self.knots.len().saturating_sub(1) {
             let (radius, at) = (self.radius(knot), self.at_knot(knot));
-            if radius > 0.0 && gone >= at - radius && gone <= at + radius {
+            if radius > 0.0 && (gone - at).abs() < radius - EDGE * self.length() {
                 return Part::Corner(knot, (gone - at + radius) / (2.0 * radius));
             }
             if gone < at {
@@ -89,6 +93,10 @@ impl<'a> Curve<'a> {
         }
         let last = self.phase.lengths.len().saturating_sub(1);
         Part::Line(last, self.share(last, gone))
+    }
+
+    fn length(&self) -> f64 {
+        self.at_knot.last().copied().unwrap_or(0.0)
     }
 
     fn share(&self, line: usize, gone: f64) -> f64 {
