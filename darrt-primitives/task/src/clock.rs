@@ -32,6 +32,7 @@ use crate::robot::RobotFacts;
 
 pub use accepted::{NoClock, give_clock};
 pub use limits::{Bounds, MotionLimits};
+pub(crate) use timed::waypoint_times_s;
 pub use timed::{Event, EventKind, Moment, TimedPlan};
 
 /// A plan that cannot be timed, or a clock that does not fit its plan.

@@ -340,15 +340,17 @@ fn result<M: TaskRobot>(
         let judged = verified.evidence?.downcast().ok()?;
         Some((plan, Arc::<Judged>::unwrap_or_clone(judged)))
     });
-    let (mut plan, proof) = judged
+    let (mut plan, mut proof) = judged
         .map(|(plan, Judged { written, proof })| {
             (prepared.exporter.with_steps(m, &plan, written, request.seed, facts), proof)
         })
         .unzip();
     let facts = M::facts(&request.problem.robot)?;
-    let no_clock = plan
-        .as_mut()
-        .and_then(|plan| give_clock(plan, &facts, &VerifyOptions::default(), &Cancel::new()).err());
+    let no_clock =
+        plan.as_mut().and_then(|plan| give_clock(plan, &facts, &VerifyOptions::default(), &Cancel::new()).err());
+    if let (Some(plan), Some(proof)) = (&plan, &mut proof) {
+        proof.duration_s = plan.timing.as_ref().map(|timing| timing.duration_s);
+    }
     Ok(PlanResult {
         plan,
         proof,

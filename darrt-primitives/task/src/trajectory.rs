@@ -17,8 +17,8 @@ use crate::clock::{ClockError, Event, EventKind, Moment, TimedPlan};
 use crate::plan_file::PlanFile;
 use crate::robot::RobotFacts;
 use messages::{
-    GripperCommand, Header, JointTrajectory, JointTrajectoryPoint, MultiDofJointTrajectory, MultiDofJointTrajectoryPoint,
-    RobotTrajectory, Seconds, Transform, Twist,
+    GripperCommand, Header, JointTrajectory, JointTrajectoryPoint, MultiDofJointTrajectory,
+    MultiDofJointTrajectoryPoint, RobotTrajectory, Seconds, Transform, Twist,
 };
 use width::HandWidth;
 

@@ -13,7 +13,6 @@ use crate::args::{ExportFormat, ExportOptions};
 use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
 use darrt_task::clock::{ClockError, NoClock, give_clock};
-use darrt_task::plan_file::PlanFile;
 use darrt_task::program::Program;
 use darrt_task::text::{counted, on_one_line};
 use darrt_task::trajectory::Sampled;

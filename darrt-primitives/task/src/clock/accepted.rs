@@ -26,7 +26,8 @@ pub fn give_clock(
 ) -> Result<(), NoClock> {
     let mut refusals = vec![0; plan.steps.len()];
     loop {
-        let share = |step: usize| refusals.get(step).and_then(|count| AFTER_REFUSALS.get(*count)).copied().unwrap_or(0.0);
+        let share =
+            |step: usize| refusals.get(step).and_then(|count| AFTER_REFUSALS.get(*count)).copied().unwrap_or(0.0);
         plan.timing = Some(build::time(plan, facts, |step, contract| share(step) * tube_m(contract))?);
         let Err(refusal) = verify_clock(plan, facts, options, cancel) else { return Ok(()) };
         let step = refusal.step.and_then(|number| usize::try_from(number).ok()?.checked_sub(1));

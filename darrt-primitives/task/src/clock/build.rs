@@ -298,7 +298,10 @@ impl<'a> Pace<'a> {
         };
         let [x, y, yaw] = [0, 1, 2].map(&sizes);
         let drive = [0, 1].map(|i: usize| x.get(i).copied().unwrap_or(0.0).hypot(y.get(i).copied().unwrap_or(0.0)));
-        let base = [channel(drive, self.drive), channel(yaw, self.turn)];
+        // What the wheels spend on turning they lack for driving.
+        let wheels = drive[0] / self.drive.velocity + yaw[0] / self.turn.velocity;
+        let wheels = channel([wheels, 0.0], Bounds { velocity: 1.0, ..Bounds::NONE });
+        let base = [channel(drive, self.drive), channel(yaw, self.turn), wheels];
         let joints = self.joints.iter().enumerate().map(|(i, bounds)| channel(sizes(BASE + i), *bounds));
         base.into_iter().chain(joints).filter(|c| c.first > 0.0 || c.second > 0.0).collect()
     }
@@ -331,7 +334,18 @@ impl<'a> Pace<'a> {
 
     /// Where the tool is in the world, or what it holds.
     fn hand_at(&self, point: &[f64]) -> Vector3<f64> {
-        self.places(point).pop().unwrap_or_default()
+        let mut poses = vec![Isometry3::identity(); self.body.tree.link_count()];
+        let joints = point.get(BASE..).unwrap_or_default();
+        // OPTIMIZATION: only the links between root and tool; the lengths are the tree's own.
+        let written = self.body.tree.forward_only(joints, &self.body.to_tool, &mut poses);
+        debug_assert!(written.is_ok(), "{written:?}");
+        let tool = world_from_base(point) * poses.get(self.body.tool).copied().unwrap_or_default();
+        self.held(tool).translation.vector
+    }
+
+    /// What the hand holds, or the hand itself.
+    fn held(&self, tool: Isometry3<f64>) -> Isometry3<f64> {
+        self.leg.holds.as_ref().map_or(tool, |(_, tool_from_object)| tool * tool_from_object)
     }
 
     /// Where all links are in the world, and last the tool or what it holds.
@@ -342,7 +356,7 @@ impl<'a> Pace<'a> {
         let written = self.body.tree.forward(joints, &world_from_base(point), &mut poses);
         debug_assert!(written.is_ok(), "{written:?}");
         let tool = poses.get(self.body.tool).copied().unwrap_or_default();
-        let hand = self.leg.holds.as_ref().map_or(tool, |(_, tool_from_object)| tool * tool_from_object);
+        let hand = self.held(tool);
         poses.iter().chain([&hand]).map(|pose| pose.translation.vector).collect()
     }
 }

@@ -12,7 +12,7 @@ use super::profile::{self, Progress, progress};
 use super::track::{BASE, Body, Track};
 use super::way::Way;
 use super::{ClockError, check};
-use crate::plan_file::timing::Timing;
+use crate::plan_file::timing::{StepTiming, Timing};
 use crate::plan_file::{JointTable, PlanFile};
 use crate::robot::RobotFacts;
 
@@ -24,6 +24,7 @@ pub struct TimedPlan {
     phases: Vec<Placed>,
     /// When each step begins, and when the last one ends; seconds.
     step_starts: Vec<f64>,
+    timing: Timing,
     grip_force_n: f64,
 }
 
@@ -128,7 +129,7 @@ impl TimedPlan {
             }
         }
         step_starts.push(now);
-        Ok(Self { body, track, phases, step_starts, grip_force_n: facts.grip_force_n })
+        Ok(Self { body, track, phases, step_starts, timing: timing.clone(), grip_force_n: facts.grip_force_n })
     }
 
     /// Seconds of the whole plan.
@@ -249,33 +250,12 @@ impl TimedPlan {
     /// When the robot passes each waypoint of a step, seconds from the beginning of the step; it stands at the first at 0. `None`
     /// if there is no such step.
     pub fn waypoint_times_s(&self, step: usize) -> Option<Vec<f64>> {
-        let begin_s = self.step_start_s(step)?;
         let points = &self.track.legs.get(step)?.points;
-        let mut times = vec![0.0; points.len()];
-        for phase in self.phases.iter().filter(|phase| phase.step == step) {
-            for (line, pair) in phase.knots.windows(2).enumerate() {
-                let (&[from, to], Some(mark), Some(length)) =
-                    (pair, phase.way.marks().get(line), phase.way.lengths().get(line))
-                else {
-                    continue;
-                };
-                let (a, b) = (points.get(from)?, points.get(to)?);
-                for at in from + 1..=to {
-                    let share = if at == to { 1.0 } else { share(points.get(at)?, a, b) };
-                    let seconds = profile::time_of(&phase.profile, mark + share * length);
-                    *times.get_mut(at)? = phase.moves_s + seconds - begin_s;
-                }
-            }
-        }
-        let end_s = self.step_start_s(step + 1)? - begin_s;
-        *times.last_mut()? = end_s;
-        let mut last = 0.0_f64;
-        for time in &mut times {
-            // Rounding apart they grow anyway; waypoints of a robot that stands are passed at once.
-            last = last.max(*time);
-            *time = last;
-        }
-        Some(times)
+        let on_line = |from: usize, to: usize, at: usize| match (points.get(from), points.get(to), points.get(at)) {
+            (Some(a), Some(b), Some(point)) => share(point, a, b),
+            _ => 0.0,
+        };
+        Some(waypoint_times_s(self.timing.steps.get(step)?, points.len(), on_line))
     }
 
     /// Times between which nothing but time passes and speed changes evenly: where phases begin, move, stop and end, and where
@@ -321,9 +301,46 @@ impl TimedPlan {
     }
 }
 
+/// When each of `count` waypoints of a step is passed, seconds from its beginning; `share` says what part of the line between two
+/// of them is gone at a third.
+pub(crate) fn waypoint_times_s(
+    timing: &StepTiming,
+    count: usize,
+    share: impl Fn(usize, usize, usize) -> f64,
+) -> Vec<f64> {
+    let mut times = vec![0.0; count];
+    let mut begin_s = 0.0;
+    for phase in &timing.phases {
+        let mut mark = 0.0;
+        for (pair, length) in phase.knots.windows(2).zip(&phase.lengths) {
+            let &[from, to] = pair else { continue };
+            for at in from + 1..=to {
+                let share = if at == to { 1.0 } else { share(from, to, at) };
+                let seconds = profile::time_of(&phase.profile, mark + share * length);
+                if let Some(slot) = times.get_mut(at) {
+                    *slot = begin_s + phase.wait_s + seconds;
+                }
+            }
+            mark += length;
+        }
+        begin_s += phase.duration_s();
+    }
+    if let Some(slot) = times.last_mut() {
+        *slot = begin_s;
+    }
+    let mut last = 0.0_f64;
+    for time in &mut times {
+        // Rounding apart they grow anyway; waypoints of a robot that stands are passed at once.
+        last = last.max(*time);
+        *time = last;
+    }
+    times
+}
+
 /// What part of the line from `a` to `b` is gone at a point on it.
 fn share(point: &[f64], a: &[f64], b: &[f64]) -> f64 {
-    let farthest = a.iter().zip(b).zip(point).max_by(|((a, b), _), ((c, d), _)| (*b - *a).abs().total_cmp(&(*d - *c).abs()));
+    let farthest =
+        a.iter().zip(b).zip(point).max_by(|((a, b), _), ((c, d), _)| (*b - *a).abs().total_cmp(&(*d - *c).abs()));
     farthest.map_or(0.0, |((a, b), point)| if a == b { 0.0 } else { ((point - a) / (b - a)).clamp(0.0, 1.0) })
 }
 

@@ -32,6 +32,8 @@ pub(crate) struct Body {
     /// The variables of the arm.
     pub(crate) arm: Vec<usize>,
     pub(crate) tool: usize,
+    /// The links between the root and the tool, and the tool, in ascending order.
+    pub(crate) to_tool: Vec<usize>,
 }
 
 impl Body {
@@ -46,12 +48,20 @@ impl Body {
             let mut joints = facts.description.joints.iter();
             joints.any(|joint| *joint.name == *name && joint.kind == JointKind::Sliding)
         };
+        let tool = tree.link_index(&facts.tool_link).ok_or_else(tool)?;
+        let mut to_tool = vec![tool];
+        // Parents come before their children, so this ends.
+        while let Some(parent) = to_tool.last().and_then(|link| tree.parent(*link)).filter(|parent| *parent > 0) {
+            to_tool.push(parent);
+        }
+        to_tool.reverse();
         Ok(Self {
             table: JointTable::new(&facts.description, &tree),
             slides: tree.variables().iter().map(|variable| is_sliding(&variable.name)).collect(),
             finger: joint(&facts.finger_joint)?,
             arm: facts.arm_joints.iter().map(|name| joint(name)).collect::<Result<_, _>>()?,
-            tool: tree.link_index(&facts.tool_link).ok_or_else(tool)?,
+            tool,
+            to_tool,
             tree,
         })
     }

@@ -27,6 +27,10 @@ use curve::{Curve, Rates, points};
 
 /// How far a limit of a joint or of the base may be exceeded, as a part of it: what rounding may do.
 const ROUNDING: f64 = 1e-6;
+/// A waypoint that is left out may be so far beside the line, rad or m of every coordinate.
+const ON_LINE: f64 = 1e-5;
+/// How fast a coordinate may jump where a corner is not rounded, rad/s or m/s: what rounding may do.
+const JUMP: f64 = 1e-6;
 /// At how many times a motion is looked at between two at which its jerk, its line or its corner changes.
 const LOOKS: u32 = 4;
 
@@ -47,6 +51,25 @@ impl Timed<'_> {
         let time = if self.duration_s > 0.0 { (t_s / self.duration_s).clamp(0.0, 1.0) } else { 0.0 };
         self.site.refusal(time, kind, message)
     }
+
+    /// Does it go elsewhere than in straight lines from waypoint to waypoint?
+    fn leaves_waypoints(&self) -> bool {
+        let is_beside = |pair: &[usize]| match pair {
+            [from, to] => (from + 1..*to).any(|at| !is_between(&self.points, *from, at, *to)),
+            _ => false,
+        };
+        let is_rounded = |phase: &Phase| phase.blends.iter().any(|radius| *radius > 0.0);
+        self.phases.iter().any(|phase| is_rounded(phase) || phase.knots.windows(2).any(is_beside))
+    }
+}
+
+/// Does the point `at` lie on the line between two others?
+fn is_between(points: &[Vec<f64>], from: usize, at: usize, to: usize) -> bool {
+    let (Some(a), Some(p), Some(b)) = (points.get(from), points.get(at), points.get(to)) else { return false };
+    let squares = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| (y - x).powi(2)).sum::<f64>();
+    let along = (squares(a, b) + squares(a, p) - squares(p, b)) / (2.0 * squares(a, b));
+    let is_near = |((a, b), p): ((&f64, &f64), &f64)| (a + along * (b - a) - p).abs() <= ON_LINE;
+    (0.0..=1.0).contains(&along) && a.iter().zip(b).zip(p).all(is_near)
 }
 
 /// Judges the clock of a plan whose waypoints have been judged.
@@ -82,8 +105,7 @@ pub(super) fn check(
         work::check(&timed, plan, &robot, limits)?;
         steps.push(timed);
     }
-    let is_rounded = |phase: &Phase| phase.blends.iter().any(|radius| *radius > 0.0);
-    if !timing.steps.iter().flat_map(|step| &step.phases).any(is_rounded) {
+    if !steps.iter().any(Timed::leaves_waypoints) {
         return Ok(());
     }
     let rounded = rounded::rounded(plan, &steps, &robot)?;
@@ -123,11 +145,21 @@ fn check_limits(timed: &Timed<'_>, robot: &Robot, limits: &MotionLimits, joints:
     for phase in timed.phases {
         let curve = Curve::new(phase, &timed.points);
         let moving = curve.moving();
+        for (knot, t_s, jump) in curve.jumps(phase) {
+            if jump > JUMP {
+                let at = phase.knots.get(knot).copied().unwrap_or(knot);
+                let text = format!("the velocity jumps by {jump:.6} at waypoint {at}, a corner that is not rounded");
+                return Err(timed.refusal(begin_s + phase.wait_s + t_s, RefusalKind::Acceleration, text));
+            }
+        }
         for (t_s, jerk) in curve.looks(phase, LOOKS) {
             let rates = curve.rates(phase, t_s, jerk);
             let here_s = begin_s + phase.wait_s + t_s;
             within(timed, here_s, "the base's drive", &rates.over(&[0, 1]), &drive)?;
             within(timed, here_s, "the base's turn", &rates.over(&[2]), &turn)?;
+            let wheels = rates.over(&[0, 1])[0] / drive.velocity + rates.over(&[2])[0] / turn.velocity;
+            let one = Bounds { velocity: 1.0, ..Bounds::NONE };
+            within(timed, here_s, "the sum of the shares of the base's drive and turn", &[wheels, 0.0, 0.0], &one)?;
             for coordinate in moving.iter().filter(|coordinate| **coordinate > 2) {
                 if let Some(bounds) = joints.get(coordinate - 3) {
                     let name = format!("`{}`", robot.joint_name(coordinate - 3));
@@ -150,7 +182,8 @@ fn within(timed: &Timed<'_>, t_s: f64, what: &str, [v, a, j]: &[f64; 3], bounds:
         // Written so that what is no number is at fault.
         let is_kept = *found <= bound * (1.0 + ROUNDING);
         if !is_kept {
-            let text = format!("{what} has the {word} {found:.6} at {t_s:.3} s of the step, at most {bound} is allowed");
+            let text =
+                format!("{what} has the {word} {found:.6} at {t_s:.3} s of the step, at most {bound} is allowed");
             return Err(timed.refusal(t_s, kind, text));
         }
     }

@@ -30,6 +30,9 @@ pub(super) fn points(step: &Step, robot: &Robot) -> Result<Vec<Vec<f64>>, String
 /// cube of that, and rounding must not decide whether the jerk before or that in the corner counts.
 const EDGE: f64 = 1e-9;
 
+/// Corners with a smaller radius, as a part of the whole way, are none.
+const SHARP: f64 = 100.0 * EDGE;
+
 /// Velocity, acceleration and jerk of all coordinates.
 #[derive(Debug)]
 pub(super) struct Rates {
@@ -45,6 +48,8 @@ pub(super) struct Curve<'a> {
     phase: &'a Phase,
     /// Length gone at each knot.
     at_knot: Vec<f64>,
+    /// The coordinates that change at all.
+    moving: Vec<usize>,
 }
 
 /// Where on the way a length gone is.
@@ -58,19 +63,20 @@ enum Part {
 
 impl<'a> Curve<'a> {
     pub(super) fn new(phase: &'a Phase, points: &'a [Vec<f64>]) -> Self {
-        let knots = phase.knots.iter().filter_map(|knot| points.get(*knot).map(Vec::as_slice)).collect();
+        let knots: Vec<&[f64]> = phase.knots.iter().filter_map(|knot| points.get(*knot).map(Vec::as_slice)).collect();
+        let first = knots.first().copied().unwrap_or_default();
+        let changes = |i: &usize| knots.iter().any(|knot| knot.get(*i) != first.get(*i));
+        let moving = (0..first.len()).filter(changes).collect();
         let mut at_knot = vec![0.0];
         for length in &phase.lengths {
             at_knot.push(at_knot.last().copied().unwrap_or(0.0) + length);
         }
-        Self { knots, phase, at_knot }
+        Self { knots, phase, at_knot, moving }
     }
 
     /// The coordinates that change at all.
-    pub(super) fn moving(&self) -> Vec<usize> {
-        let first = self.knots.first().copied().unwrap_or_default();
-        let changes = |i: &usize| self.knots.iter().any(|knot| knot.get(*i) != first.get(*i));
-        (0..first.len()).filter(changes).collect()
+    pub(super) fn moving(&self) -> &[usize] {
+        &self.moving
     }
 
     pub(super) fn radius(&self, knot: usize) -> f64 {
@@ -82,7 +88,9 @@ impl<'a> Curve<'a> {
     }
 
     fn part(&self, gone: f64) -> Part {
-        for knot in 1..self.knots.len().saturating_sub(1) {
+        // The knot before, and that after.
+        let line = self.at_knot.partition_point(|at| *at <= gone).saturating_sub(1);
+        for knot in line.max(1)..(line + 2).min(self.knots.len().saturating_sub(1)) {
             let (radius, at) = (self.radius(knot), self.at_knot(knot));
             if radius > 0.0 && (gone - at).abs() < radius - EDGE * self.length() {
                 return Part::Corner(knot, (gone - at + radius) / (2.0 * radius));
@@ -140,8 +148,11 @@ impl<'a> Curve<'a> {
     /// The coordinates where this length has been gone.
     pub(super) fn at(&self, gone: f64) -> Vec<f64> {
         let part = self.part(gone);
-        let count = self.knots.first().map_or(0, |knot| knot.len());
-        (0..count).map(|coordinate| self.derivatives(part, coordinate)[0]).collect()
+        let mut point = self.knots.first().map(|knot| knot.to_vec()).unwrap_or_default();
+        for &coordinate in &self.moving {
+            point[coordinate] = self.derivatives(part, coordinate)[0];
+        }
+        point
     }
 
     /// Where the robot is after `t_s` seconds of motion.
@@ -154,14 +165,27 @@ impl<'a> Curve<'a> {
         let (length, speed, push) = gone(phase, t_s);
         let part = self.part(length);
         let count = self.knots.first().map_or(0, |knot| knot.len());
-        let mut rates = Rates { velocity: Vec::new(), acceleration: Vec::new(), jerk: Vec::new() };
-        for coordinate in 0..count {
+        let mut rates = Rates { velocity: vec![0.0; count], acceleration: vec![0.0; count], jerk: vec![0.0; count] };
+        for &coordinate in &self.moving {
             let [_, first, second, third] = self.derivatives(part, coordinate);
-            rates.velocity.push(first * speed);
-            rates.acceleration.push(second * speed * speed + first * push);
-            rates.jerk.push(third * speed.powi(3) + 3.0 * second * speed * push + first * jerk);
+            rates.velocity[coordinate] = first * speed;
+            rates.acceleration[coordinate] = second * speed * speed + first * push;
+            rates.jerk[coordinate] = third * speed.powi(3) + 3.0 * second * speed * push + first * jerk;
         }
         rates
+    }
+
+    /// The inner knots whose corners are not rounded, or so little that it is as good as nothing: when each is passed, seconds, and
+    /// by how much the velocity of any coordinate jumps there.
+    pub(super) fn jumps(&self, phase: &Phase) -> Vec<(usize, f64, f64)> {
+        let end_s = phase.moving_s();
+        let sharp = (1..self.knots.len().saturating_sub(1)).filter(|knot| self.radius(*knot) < SHARP * self.length());
+        let jump = |knot: usize| {
+            let t_s = time_of(phase, self.at_knot(knot), 0.0, end_s);
+            let change = |i: &usize| (self.slope(knot, *i) - self.slope(knot - 1, *i)).abs();
+            (knot, t_s, self.moving.iter().map(change).fold(0.0, f64::max) * gone(phase, t_s).1)
+        };
+        sharp.map(jump).collect()
     }
 
     /// Times at which to look at the motion, each with the jerk of the profile there: `count` between any two at which something

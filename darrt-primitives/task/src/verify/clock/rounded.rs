@@ -22,8 +22,7 @@ pub(super) fn rounded(plan: &PlanFile, steps: &[Timed<'_>], robot: &Robot) -> Re
     let world = World::new(&plan.problem)?;
     let mut out = PlanFile { timing: None, ..plan.clone() };
     for (step, timed) in out.steps.iter_mut().zip(steps) {
-        let is_rounded = timed.phases.iter().any(|phase| phase.blends.iter().any(|radius| *radius > 0.0));
-        if is_rounded {
+        if timed.leaves_waypoints() {
             step.waypoints = waypoints(timed, robot, &world)?;
         }
     }
@@ -53,7 +52,8 @@ fn waypoints(timed: &Timed<'_>, robot: &Robot, world: &World<'_>) -> Result<Vec<
             let [a, b, c] = [mark - radius, mark, mark + radius].map(|gone| curve.at(gone));
             let corner = timed.points.get(*knot).ok_or_else(lost)?;
             // The curve passes the corner by 3/8 of how far the middle of its ends does, and n chords by 2 / n^2 of that.
-            let bend: Vec<f64> = a.iter().zip(&c).zip(corner).map(|((a, c), at)| 0.375 * ((a + c) / 2.0 - at)).collect();
+            let bend: Vec<f64> =
+                a.iter().zip(&c).zip(corner).map(|((a, c), at)| 0.375 * ((a + c) / 2.0 - at)).collect();
             debug_assert!(b.iter().zip(corner).zip(&bend).all(|((b, at), bend)| (b - at - bend).abs() < 1e-6));
             let chords = (2.0 * travel_m(&bend, &rates) / CHORD_M).sqrt().ceil().clamp(2.0, MOST_CHORDS);
             let mut i = 0.0;

@@ -54,10 +54,11 @@ pub(super) fn check(timed: &Timed<'_>, plan: &PlanFile, robot: &Robot, limits: &
     let mut begin_s = 0.0;
     for phase in timed.phases {
         let curve = Curve::new(phase, &timed.points);
+        robot.link_poses(curve.at(0.0).get(3..).unwrap_or_default(), &mut links);
         let mut place = |t_s: f64| -> Vector3<f64> {
             let point = curve.when(t_s);
             let base = [0, 1, 2].map(|i| point.get(i).copied().unwrap_or(0.0));
-            robot.link_poses(point.get(3..).unwrap_or_default(), &mut links);
+            robot.arm_link_poses(point.get(3..).unwrap_or_default(), &mut links);
             let tool = links.get(robot.tool).copied().unwrap_or_default();
             (world_from_robot(&base) * tool * tool_from_held).translation.vector
         };
@@ -97,7 +98,8 @@ fn check_every_knot(timed: &Timed<'_>) -> Result<(), Refusal> {
         for pair in phase.knots.windows(2) {
             let [from, to] = pair else { continue };
             if to - from > 1 && is_moved(*from, *to) {
-                let text = format!("the clock leaves out waypoints between {from} and {to}, but something is pushed there");
+                let text =
+                    format!("the clock leaves out waypoints between {from} and {to}, but something is pushed there");
                 return Err(timed.refusal(0.0, RefusalKind::Clock, text));
             }
         }
