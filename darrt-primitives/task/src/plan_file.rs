@@ -10,7 +10,7 @@
 //! | what does the published schema say? | [`schema`](crate::schema) |
 //!
 //! `docs/plan-format.md` explains the meaning of every key to readers without this code. SI units, radians, world frame
-//! with the floor at z = 0, quaternions `[x, y, z, w]`. No times are stored: one problem and one seed give one file,
+//! with the floor at z = 0, quaternions `[x, y, z, w]`. How long the search took is not stored: one problem and one seed give one file,
 //! byte for byte.
 
 pub mod complete;
