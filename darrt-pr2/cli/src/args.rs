@@ -31,13 +31,15 @@ Examples:
   darrt plan plate3                   solve one; writes plate3.plan.json and plate3.html
   darrt show plate3.plan.json         draw a plan again
   darrt check plate3.plan.json        judge a plan, for example one edited by hand
+  darrt execute plate3.plan.json --noise 0.5
+                                      a hundred times in physics, with half the errors of a real robot
   darrt bench                         the paper's table: every problem, ten seeds
   darrt problems --print plate3 > mine.toml
                                       copy a problem, edit it, then: darrt plan mine.toml
 
 Exit codes:
   0    solved, or the plan is accepted
-  1    not solved within the budget
+  1    not solved within the budget; a plan that is executed fails in some run
   2    bad input or usage
   3    the verifier refuses the plan; with `check --strict` also a plan with warnings
   4    the output cannot be written
@@ -50,6 +52,8 @@ pub enum Command {
     Plan(PlanOptions),
     /// Judge a plan file with the verifier
     Check(CheckOptions),
+    /// Execute a plan in physics: free objects, fingers of limited force, errors of perception and motion
+    Execute(ExecuteOptions),
     /// List the built-in problems, or print one to copy and edit
     Problems(ProblemsOptions),
     /// Draw a problem or a plan
@@ -170,6 +174,47 @@ pub struct CheckOptions {
     pub json: bool,
     /// Print nothing but errors
     #[arg(short, long, conflicts_with = "steps")]
+    pub quiet: bool,
+}
+
+const EXECUTE_EXAMPLES: &str = "\
+Examples:
+  darrt execute plate3.plan.json                    once, in a world that is as the plan has it
+  darrt execute plate3.plan.json --noise 1          100 times, with the errors of a real robot
+  darrt execute plate3.plan.json --noise mine.toml  with errors of your own
+  darrt execute --print-noise > mine.toml           the errors of a real robot, to copy and edit
+
+The plan is executed as it is, open loop. A run succeeds if every object ends at its goal, within the
+tolerance of the problem, and nothing else was moved. The first departure from the plan is told as the
+cause of a failure. The same plan, noise and seed give the same runs with any number of threads.";
+
+/// Options of `darrt execute`.
+#[derive(Debug, Args)]
+#[command(after_help = EXECUTE_EXAMPLES)]
+pub struct ExecuteOptions {
+    /// The plan file
+    #[arg(required_unless_present = "print_noise")]
+    pub plan: Option<PathBuf>,
+    /// Errors of the world and the robot: a part of those of a real robot, 0 to 1, or a file
+    #[arg(long, value_name = "FILE|0..1", default_value = "0", allow_hyphen_values = true)]
+    pub noise: String,
+    /// How often [default: once without noise, else 100 times]
+    #[arg(long, value_name = "NUMBER", value_parser = run_count, allow_hyphen_values = true)]
+    pub runs: Option<u64>,
+    /// Seed of the errors
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
+    pub seed: u64,
+    /// Runs at the same time [default: one on every core]
+    #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Print all runs, with where the objects were after every step, as one JSON object
+    #[arg(long, conflicts_with = "quiet")]
+    pub json: bool,
+    /// Print the noise of a real robot as a file, and execute nothing
+    #[arg(long, exclusive = true)]
+    pub print_noise: bool,
+    /// Print nothing but errors
+    #[arg(short, long)]
     pub quiet: bool,
 }
 
@@ -308,6 +353,10 @@ fn any_count(text: &str) -> Result<u64, String> {
 
 fn positive(text: &str) -> Result<u64, String> {
     whole(text, 1, u64::MAX)
+}
+
+fn run_count(text: &str) -> Result<u64, String> {
+    whole(text, 1, 1_000_000)
 }
 
 fn threads(text: &str) -> Result<usize, String> {
