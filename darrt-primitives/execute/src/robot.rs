@@ -5,6 +5,7 @@ use darrt_primitives::kinematics::{link_bodies, mesh_folders};
 use darrt_task::plan_file::JointTable;
 use darrt_task::robot::RobotFacts;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use rapier3d_f64::prelude::Pose;
 
 use crate::error::ExecuteError;
 use crate::solids::{self, Piece};
@@ -35,13 +36,17 @@ pub(crate) struct Robot {
 #[derive(Debug)]
 pub(crate) struct Hand {
     openings: Vec<Opening>,
+    /// The links with solids between hand and tips: on the way to which tip, and the link.
+    pub(crate) between: Vec<(usize, usize)>,
 }
 
 /// The hand at one value of its finger joint.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Opening {
     pub(crate) joint: f64,
     pub(crate) tool_from_tip: [Isometry3<f64>; 2],
+    /// By link of [`Hand::between`].
+    tool_from_between: Vec<Isometry3<f64>>,
 }
 
 impl Opening {
@@ -49,6 +54,12 @@ impl Opening {
     pub(crate) fn half_width(&self) -> f64 {
         let [a, b] = &self.tool_from_tip;
         (a.translation.y - b.translation.y) / 2.0
+    }
+
+    /// A link of [`Hand::between`] in the frame of the tip.
+    pub(crate) fn tip_from_between(&self, index: usize, tip: usize) -> Pose {
+        let tool_from_link = self.tool_from_between.get(index).copied().unwrap_or_else(Isometry3::identity);
+        (self.tool_from_tip[tip].inverse() * tool_from_link).into()
     }
 }
 
@@ -61,7 +72,7 @@ impl Robot {
             let parts = body.parts.iter();
             parts.map(|part| solids::of_part(&body.name, &part.shape, &part.body_from_shape)).collect()
         };
-        let pieces = bodies.iter().map(|body| body.as_ref().map_or(Ok(Vec::new()), part)).collect::<Result<_, _>>()?;
+        let pieces: Vec<Vec<Piece>> = bodies.iter().map(|body| body.as_ref().map_or(Ok(Vec::new()), part)).collect::<Result<_, _>>()?;
         let missing = |what, name: &str| ExecuteError::NoSuchPart { what, name: name.to_owned() };
         let link = |name: &str| tree.link_index(name).ok_or_else(|| missing("link", name));
         let variable = |name: &str| tree.variable_index(name).ok_or_else(|| missing("joint", name));
@@ -76,7 +87,8 @@ impl Robot {
                 *slot = parent && !moves;
             }
         }
-        let hand = Hand::new(&tree, finger, tool, tips)?;
+        let between = between(&tree, &pieces, tool, tips);
+        let hand = Hand::new(&tree, finger, tool, tips, between)?;
         Ok(Self {
             table: JointTable::new(description, &tree),
             tree,
@@ -102,7 +114,13 @@ impl Robot {
 }
 
 impl Hand {
-    fn new(tree: &KinematicTree, finger: usize, tool: usize, tips: [usize; 2]) -> Result<Self, ExecuteError> {
+    fn new(
+        tree: &KinematicTree,
+        finger: usize,
+        tool: usize,
+        tips: [usize; 2],
+        between: Vec<(usize, usize)>,
+    ) -> Result<Self, ExecuteError> {
         let limit = tree.variables().get(finger).map(|variable| variable.limit);
         let Some(limit) = limit.filter(|limit| limit.lower.is_finite() && limit.upper.is_finite()) else {
             return Err(ExecuteError::Hand("its finger joint has no limits".to_owned()));
@@ -117,13 +135,17 @@ impl Hand {
             let _ = tree.forward(&joints, &Isometry3::identity(), &mut links);
             let at = |link: usize| links.get(link).copied().unwrap_or_else(Isometry3::identity);
             let tool_from_world = at(tool).inverse();
-            Opening { joint, tool_from_tip: tips.map(|tip| tool_from_world * at(tip)) }
+            Opening {
+                joint,
+                tool_from_tip: tips.map(|tip| tool_from_world * at(tip)),
+                tool_from_between: between.iter().map(|(_, link)| tool_from_world * at(*link)).collect(),
+            }
         };
         let openings: Vec<Opening> = (0..OPENINGS).map(&mut opening).collect();
         if openings.windows(2).any(|pair| matches!(pair, [a, b] if b.half_width() <= a.half_width())) {
             return Err(ExecuteError::Hand("its tips do not part as its finger joint grows".to_owned()));
         }
-        Ok(Self { openings })
+        Ok(Self { openings, between })
     }
 
     /// The closed hand.
@@ -146,12 +168,32 @@ impl Hand {
         let pair = self.openings.get(above - 1..=above);
         let Some([low, high]) = pair else {
             // There are always two.
-            return Opening { joint: 0.0, tool_from_tip: [Isometry3::identity(); 2] };
+            return Opening {
+                joint: 0.0,
+                tool_from_tip: [Isometry3::identity(); 2],
+                tool_from_between: Vec::new(),
+            };
         };
         let part = ((value - key(low)) / (key(high) - key(low))).clamp(0.0, 1.0);
         let tip = |index: usize| low.tool_from_tip[index].lerp_slerp(&high.tool_from_tip[index], part);
-        Opening { joint: low.joint + part * (high.joint - low.joint), tool_from_tip: [tip(0), tip(1)] }
+        let between = low.tool_from_between.iter().zip(&high.tool_from_between);
+        Opening {
+            joint: low.joint + part * (high.joint - low.joint),
+            tool_from_tip: [tip(0), tip(1)],
+            tool_from_between: between.map(|(low, high)| low.lerp_slerp(high, part)).collect(),
+        }
     }
+}
+
+/// The links above the tips that the hand itself is not on: with solids, and below the last one that tool and tip share.
+fn between(tree: &KinematicTree, pieces: &[Vec<Piece>], tool: usize, tips: [usize; 2]) -> Vec<(usize, usize)> {
+    let above = |link: usize| std::iter::successors(tree.parent(link), |link| tree.parent(*link));
+    let mut found = Vec::new();
+    for (index, tip) in tips.into_iter().enumerate() {
+        let own = above(tip).take_while(|link| *link != tool && !above(tool).any(|shared| shared == *link));
+        found.extend(own.filter(|link| pieces.get(*link).is_some_and(|own| !own.is_empty())).map(|link| (index, link)));
+    }
+    found
 }
 
 /// Where a base at x, y and yaw has the robot's root.

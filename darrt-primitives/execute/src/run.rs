@@ -228,6 +228,7 @@ impl<'a> Performance<'a> {
             let has_closed = closed_s.is_none_or(|closed| t >= closed) || step.contract.hand != HandUse::Takes;
             let is_held = step.holds.is_some() && has_closed && t < lets_go_s;
             let mut event = self.watch.touch(&self.stage, step, is_held);
+            if std::env::var("XD").is_ok_and(|x| x.split_once(':').is_some_and(|(s,f)| s.parse::<usize>().unwrap()==index+1 && { let (a,b)=f.split_once('-').unwrap(); a.parse::<f64>().unwrap()<=t/step.duration_s() && t/step.duration_s()<=b.parse::<f64>().unwrap() })) { let tw=self.stage.world_from_tool(); for o in 0..self.of.starts.len() { let a=tw.inverse()*self.stage.object(o); let (v,w)=self.stage.speeds(o); eprintln!("{} {:.4} grip {:?} w {:.5} obj-in-tool {:.2?} lean {:.3} v {:.4} w {:.3}", index+1, t, command.grip, self.stage.opening().half_width(), (1e3*a.translation.vector).as_slice(), goal::lean_deg(&self.stage.object(o),&Isometry3::identity()), v, w); } for c in self.stage.contacts() { if c.force.norm()>0.5 { eprintln!("     {:?} {:.5} {:.1?}", c.pair, c.depth_m, (tw.inverse()*c.force).as_slice()); } } }
             if event.is_none() && (tick % LOOK_EVERY == 0 || tick == count) {
                 event = self.watch.look(&self.stage, step, is_held);
             }

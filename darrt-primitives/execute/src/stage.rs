@@ -5,7 +5,7 @@
 use darrt_task::problem_file::{ProblemFile, geometry::FLOOR};
 use nalgebra::{Isometry3, Vector3};
 use rapier3d_f64::prelude::{
-    ActiveCollisionTypes, CoefficientCombineRule, ColliderBuilder, FrictionModel, GenericJointBuilder, Group,
+    ActiveCollisionTypes, CoefficientCombineRule, ColliderBuilder, ColliderHandle, FrictionModel, GenericJointBuilder, Group,
     ImpulseJointHandle, InteractionGroups, InteractionTestMode, JointAxesMask, JointAxis, MotorModel, PhysicsWorld,
     Pose, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients, Vector,
 };
@@ -16,11 +16,11 @@ use crate::solids::{self, Piece};
 use crate::timeline::Grip;
 
 /// Time step, s. At 1/60 s pads sink into what they hold.
-pub const STEP_S: f64 = 1.0 / 240.0;
+pub(crate) const STEP_S: f64 = 1.0 / 240.0;
 /// How stiff contacts are, Hz: at the engine's 30 a plate is thrown out of the hand by 100 N, at 1000 contacts jitter.
 const CONTACT_HZ: f64 = 240.0;
 /// Gravity, m/s^2.
-pub const GRAVITY: f64 = 9.81;
+pub(crate) const GRAVITY: f64 = 9.81;
 
 /// Mass of a fingertip with what drives it, kg.
 const TIP_KG: f64 = 1.0;
@@ -113,6 +113,8 @@ struct Fingers {
     joints: [ImpulseJointHandle; 2],
     /// Moves as the tool frame does.
     tool: RigidBodyHandle,
+    /// The solids of the links between hand and tip: which tip, which of [`Hand`](crate::robot::Hand)'s links, and where in it.
+    between: Vec<(usize, usize, Pose, ColliderHandle)>,
 }
 
 /// The world of one run.
@@ -120,7 +122,7 @@ pub(crate) struct Stage<'a> {
     robot: &'a Robot,
     pub(crate) world: PhysicsWorld,
     objects: Vec<RigidBodyHandle>,
-    /// Links with solids but for the tips.
+    /// Links with solids but for the fingers.
     links: Vec<(usize, RigidBodyHandle)>,
     fingers: Fingers,
     poses: Vec<Isometry3<f64>>,
@@ -204,7 +206,7 @@ impl<'a> Stage<'a> {
         robot.link_poses(&world_from_base(base), joints, &mut poses);
         let mut links = Vec::new();
         for (link, pieces) in robot.pieces.iter().enumerate() {
-            if pieces.is_empty() || robot.tips.contains(&link) {
+            if pieces.is_empty() || robot.tips.contains(&link) || robot.hand.between.iter().any(|(_, at)| *at == link) {
                 continue;
             }
             let body = RigidBodyBuilder::kinematic_position_based().pose(pose_of(&poses, link));
@@ -225,13 +227,9 @@ impl<'a> Stage<'a> {
         }
         self.robot.link_poses(&world_from_base(base), joints, &mut self.poses);
         for (link, handle) in &self.links {
-            if let Some(body) = self.world.bodies.get_mut(*handle) {
-                body.set_next_kinematic_position(pose_of(&self.poses, *link));
-            }
+            go_to(&mut self.world, *handle, pose_of(&self.poses, *link));
         }
-        if let Some(body) = self.world.bodies.get_mut(self.fingers.tool) {
-            body.set_next_kinematic_position(pose_of(&self.poses, self.robot.tool));
-        }
+        go_to(&mut self.world, self.fingers.tool, pose_of(&self.poses, self.robot.tool));
         self.fingers.command(&mut self.world, self.robot, grip, &now);
         self.world.step();
     }
@@ -304,14 +302,29 @@ fn pose_of(poses: &[Isometry3<f64>], link: usize) -> Pose {
     poses.get(link).copied().unwrap_or_else(Isometry3::identity).into()
 }
 
+/// Moves a kinematic body within the next time step.
+///
+/// The engine takes the velocity from the difference of the quaternions: of the two that mean one rotation it gets the nearer.
+fn go_to(world: &mut PhysicsWorld, body: RigidBodyHandle, mut pose: Pose) {
+    if let Some(body) = world.bodies.get_mut(body) {
+        if pose.rotation.dot(body.position().rotation) < 0.0 {
+            pose.rotation = -pose.rotation;
+        }
+        body.set_next_kinematic_position(pose);
+    }
+}
+
 fn add_link(world: &mut PhysicsWorld, robot: &Robot, link: usize, body: RigidBodyBuilder) -> RigidBodyHandle {
     let body = world.bodies.insert(body);
     for piece in robot.pieces.get(link).into_iter().flatten() {
-        let kinds = ActiveCollisionTypes::default() | ActiveCollisionTypes::KINEMATIC_FIXED;
-        let solid = collider(piece, Owner::Link(link), 1.0, groups(ROBOT, ROOM | TOUCHED));
-        world.colliders.insert_with_parent(solid.active_collision_types(kinds), body, &mut world.bodies);
+        world.colliders.insert_with_parent(link_solid(piece, link), body, &mut world.bodies);
     }
     body
+}
+
+fn link_solid(piece: &Piece, link: usize) -> ColliderBuilder {
+    let kinds = ActiveCollisionTypes::default() | ActiveCollisionTypes::KINEMATIC_FIXED;
+    collider(piece, Owner::Link(link), 1.0, groups(ROBOT, ROOM | TOUCHED)).active_collision_types(kinds)
 }
 
 impl Fingers {
@@ -339,7 +352,16 @@ impl Fingers {
                 .motor_max_force(JointAxis::LinY, 2.0 * robot.grip_force_n);
             world.impulse_joints.insert(tool, tips[index], joint, true)
         });
-        Self { tips, joints, tool }
+        let mut between = Vec::new();
+        for (index, (tip, link)) in robot.hand.between.iter().enumerate() {
+            for piece in robot.pieces.get(*link).into_iter().flatten() {
+                let at = opening.tip_from_between(index, *tip) * piece.body_from_piece;
+                let solid = link_solid(piece, *link).position(at);
+                let solid = world.colliders.insert_with_parent(solid, tips[*tip], &mut world.bodies);
+                between.push((*tip, index, piece.body_from_piece, solid));
+            }
+        }
+        Self { tips, joints, tool, between }
     }
 
     /// Where the tips are along the opening axis of the tool, metres.
@@ -359,6 +381,11 @@ impl Fingers {
         // How much farther open than commanded they are.
         let open = (a - b) / 2.0 - wanted.half_width();
         let shift = 0.0_f64.clamp(open - most, open + most);
+        for (tip, index, link_from_piece, solid) in &self.between {
+            if let Some(solid) = world.colliders.get_mut(*solid) {
+                solid.set_position_wrt_parent(now.tip_from_between(*index, *tip) * *link_from_piece);
+            }
+        }
         for (index, outward) in [(0, 1.0), (1, -1.0)] {
             let frames = frames(&now.tool_from_tip[index]);
             if let Some(joint) = world.impulse_joints.get_mut(self.joints[index], false) {

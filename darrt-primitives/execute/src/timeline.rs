@@ -67,8 +67,6 @@ pub(crate) struct TimedStep {
     opening: Option<usize>,
     /// Index of the object in the hand.
     pub(crate) holds: Option<(usize, Isometry3<f64>)>,
-    /// Index of the object that the step is about.
-    pub(crate) object: Option<usize>,
     pub(crate) pushes: Option<usize>,
     /// Where the objects shall be at the end.
     pub(crate) ends: Vec<Isometry3<f64>>,
@@ -204,7 +202,6 @@ fn timed(plan: &PlanFile, robot: &Robot, index: usize, step: &Step) -> Result<Ti
         closing,
         opening,
         holds,
-        object: step.object.as_ref().map(object).transpose()?,
         pushes: step.pushes.as_ref().map(object).transpose()?,
         ends: ends.collect::<Result<_, _>>()?,
     };
