@@ -19,6 +19,9 @@ use crate::timeline::Grip;
 pub(crate) const STEP_S: f64 = 1.0 / 240.0;
 /// How stiff contacts are, Hz: at the engine's 30 a plate is thrown out of the hand by 100 N, at 1000 contacts jitter.
 const CONTACT_HZ: f64 = 240.0;
+/// Iterations of the solver, outer and inner. With the engine's 4 and 1 a plate creeps through the hand that carries it, 3 to
+/// 55 mm in a plan, with these 0.2 to 1.1 mm.
+const ITERATIONS: [usize; 2] = [8, 4];
 /// Gravity, m/s^2.
 pub(crate) const GRAVITY: f64 = 9.81;
 
@@ -145,6 +148,8 @@ pub(crate) fn empty_world() -> PhysicsWorld {
     how.friction_model = FrictionModel::Coulomb;
     // A contact may be seen as it was only as long as nothing has moved by 5 cm: far too long for us.
     how.contact_recycling = false;
+    how.num_solver_iterations = ITERATIONS[0];
+    how.num_internal_pgs_iterations = ITERATIONS[1];
     world
 }
 
