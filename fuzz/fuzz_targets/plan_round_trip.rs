@@ -107,6 +107,7 @@ impl PlanSketch {
             contracts,
             start: self.start.waypoint(),
             steps: self.steps.iter().map(StepSketch::step).collect(),
+            timing: None,
         }
     }
 }

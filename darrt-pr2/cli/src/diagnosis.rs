@@ -120,6 +120,7 @@ mod tests {
         accounts.count(&[Bucket::NoGrasp, Bucket::Accepted, Bucket::NotUseful], 1, false, None);
         let result = PlanResult {
             proof: None,
+            no_clock: None,
             execution_s: None,
             found: None,
             plan: None,

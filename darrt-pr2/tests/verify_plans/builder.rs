@@ -211,6 +211,7 @@ impl Builder {
             contracts: STANDARD.iter().map(|(id, contract)| (PrimitiveName::new(id.name()), *contract)).collect(),
             start: self.start.clone(),
             steps: self.steps.clone(),
+            timing: None,
         }
     }
 }

@@ -85,6 +85,7 @@ impl Exporter {
             contracts,
             start: self.waypoint(m, plan.start(), plan.start().mode.gap_m()),
             steps,
+            timing: None,
         }
     }
 

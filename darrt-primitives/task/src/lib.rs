@@ -8,12 +8,14 @@
 //! | is it hopeless? | [`goal_means`], [`goal_check`], `doubts` |
 //! | how is it planned? | [`world`] (with the private `supports`), [`planning`] |
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
+//! | when is the robot where? | [`clock`] |
 //! | where does the time go? | [`profile`] |
 //! | how are files read, written and described? | [`text_file`], [`text`], [`schema`] |
 //! | what does a person see? | [`picture`], [`viewer`] |
 //!
 //! Nothing here names a robot.
 
+pub mod clock;
 mod doubts;
 pub mod export;
 pub mod file_kind;

@@ -6,6 +6,7 @@
 //! | how is it written so that it is never half there? | [`mod@write`] |
 //! | which joints does a waypoint list? | [`joints`], [`complete`] |
 //! | how was it found? | [`facts`] |
+//! | when is the robot where? | [`timing`] |
 //! | what does the published schema say? | [`schema`](crate::schema) |
 //!
 //! `docs/plan-format.md` explains the meaning of every key to readers without this code. SI units, radians, world frame
@@ -19,6 +20,7 @@ pub mod joints;
 mod json;
 mod layout;
 pub mod read;
+pub mod timing;
 mod unique;
 pub mod write;
 
@@ -35,6 +37,7 @@ use crate::problem_file::{PrimitiveName, ProblemFile};
 pub use error::PlanFileError;
 pub use facts::{GradeName, PlannerFacts, SearchName};
 pub use joints::JointTable;
+pub use timing::Timing;
 
 /// The only accepted value of the key `format`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -68,6 +71,9 @@ pub struct PlanFile {
     pub start: Waypoint,
     /// The primitive actions in order.
     pub steps: Vec<Step>,
+    /// When the robot is where; missing in files of older programs and in plans that were not timed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub timing: Option<Timing>,
 }
 
 /// One primitive action.

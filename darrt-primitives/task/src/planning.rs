@@ -23,6 +23,7 @@ use darrt_primitives::surroundings::NearPair;
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
 use darrt_primitives::validity::SceneValidity;
 
+use crate::clock::{NoClock, give_clock};
 use crate::doubts::Outlook;
 use crate::export::{Exporter, Written};
 use crate::plan_file::{PlanFile, PlannerFacts, SearchName};
@@ -116,7 +117,10 @@ pub struct PlanResult {
     pub plan: Option<PlanFile>,
     /// What the verifier saw of that plan.
     pub proof: Option<Proof>,
-    /// Seconds that carrying it out takes, see [`CostName`].
+    /// Why the plan has no clock, if it has none.
+    pub no_clock: Option<NoClock>,
+    /// Seconds that carrying it out takes, see [`CostName`]: the cost by which plans are compared, an estimate of what its clock
+    /// says.
     pub execution_s: Option<f64>,
     /// The plan that was found before it was improved, with the seconds of its straight ways: where one is blocked, the way
     /// around takes longer. `None` if the plan is as it was found.
@@ -336,14 +340,19 @@ fn result<M: TaskRobot>(
         let judged = verified.evidence?.downcast().ok()?;
         Some((plan, Arc::<Judged>::unwrap_or_clone(judged)))
     });
-    let (plan, proof) = judged
+    let (mut plan, proof) = judged
         .map(|(plan, Judged { written, proof })| {
             (prepared.exporter.with_steps(m, &plan, written, request.seed, facts), proof)
         })
         .unzip();
+    let facts = M::facts(&request.problem.robot)?;
+    let no_clock = plan
+        .as_mut()
+        .and_then(|plan| give_clock(plan, &facts, &VerifyOptions::default(), &Cancel::new()).err());
     Ok(PlanResult {
         plan,
         proof,
+        no_clock,
         execution_s,
         found,
         plans: 0,

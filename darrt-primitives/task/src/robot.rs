@@ -9,6 +9,7 @@ use std::sync::Arc;
 use darrt_primitives::kinematics::{RobotDescription, UrdfError};
 use darrt_primitives::manipulator::{Configuration, Manipulator};
 
+use crate::clock::MotionLimits;
 use crate::problem_file::Robot as RobotSettings;
 use crate::problem_file::suggest::nearest;
 
@@ -86,6 +87,8 @@ pub struct RobotFacts {
     pub payload_kg: f64,
     /// The largest force with which the hand pushes sideways, newton.
     pub push_force_n: f64,
+    /// How fast it is driven: what its description does not say, with [`MotionLimits::default`] for what nobody knows.
+    pub motion: MotionLimits,
 }
 
 /// A robot that cannot be built as a problem asks.

@@ -8,7 +8,7 @@ use crate::output::Output;
 use crate::steps;
 use darrt_task::goal_edges;
 use darrt_task::picture::Story;
-use darrt_task::plan_file::PlanFile;
+use darrt_task::plan_file::{PlanFile, Timing};
 use darrt_task::problem_file::PrimitiveName;
 use darrt_task::program::Program;
 use darrt_task::text::{counted, on_one_line};
@@ -46,7 +46,8 @@ pub(crate) fn run(program: &dyn Program, options: &CheckOptions, output: &mut Ou
     } else if !options.quiet {
         let verdict = if is_refused { "right, but not accepted" } else { "accepted" };
         let warnings = proof.warnings.iter().map(|warning| format!("\nwarning:  {warning}"));
-        output.print(&format!("{name}: {verdict}\n{}{}", words(&proof), warnings.collect::<String>()))?;
+        let clock = plan.timing.as_ref().map_or_else(String::new, |timing| format!("\n{}", clock(timing)));
+        output.print(&format!("{name}: {verdict}\n{}{clock}{}", words(&proof), warnings.collect::<String>()))?;
         notices(&plan, output)?;
     }
     if is_refused {
@@ -73,6 +74,7 @@ fn json(proof: &Proof, is_accepted: bool) -> Result<String, Failure> {
         "steps": proof.steps,
         "waypoints": proof.waypoints,
         "states": proof.states,
+        "duration_s": proof.duration_s,
         "smallest_clearance": proof.smallest_clearance.as_ref().map(clearance),
         "smallest_intended": proof.smallest_intended.as_ref().map(clearance),
         "warnings": warnings.collect::<Vec<_>>(),
@@ -118,6 +120,11 @@ pub(crate) fn words(proof: &Proof) -> String {
         }
     }
     text
+}
+
+/// How long the plan takes.
+pub(crate) fn clock(timing: &Timing) -> String {
+    format!("clock:    {:.1} s at the robot's limits", timing.duration_s)
 }
 
 /// What a person should know besides.

@@ -49,6 +49,11 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
         }
         output.print(&steps::table(&story))?;
         output.print(&check::words(proof))?;
+        match (&plan.timing, &result.no_clock) {
+            (Some(timing), _) => output.print(&check::clock(timing))?,
+            (None, Some(why)) => output.print(&format!("notice:   {why}"))?,
+            (None, None) => {}
+        }
         output.print(&safety::margins(&request.problem))?;
         if !proof.warnings.is_empty() {
             output.print(&safety::notices(&proof.warnings))?;

@@ -152,6 +152,7 @@ impl<'a> Judge<'a> {
             exact_tests: self.stage.exact_tests,
             smallest_clearance: unintended.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m)),
             smallest_intended: near,
+            duration_s: None,
             warnings,
         })
     }

@@ -48,6 +48,7 @@ pub(in crate::plan_file) fn sample() -> PlanFile {
         },
         start: at,
         steps: vec![step],
+        timing: None,
     }
 }
 
