@@ -36,7 +36,7 @@ fn help_teaches_commands_options_and_exit_codes() {
     let folder = tempfile::tempdir().unwrap();
     let help = darrt(folder.path(), &["--help"]);
     assert_eq!(code(&help), 0);
-    for word in ["plan", "check", "problems", "show", "schema", "bench", "Examples:", "Exit codes:", "130"] {
+    for word in ["plan", "check", "execute", "problems", "show", "schema", "bench", "Examples:", "Exit codes:", "130"] {
         assert!(stdout(&help).contains(word), "{word}");
     }
     let help = stdout(&darrt(folder.path(), &["plan", "--help"]));

@@ -2,7 +2,7 @@
 
 use darrt_geom::GeomError;
 use darrt_primitives::kinematics::UrdfError;
-use darrt_task::plan_file::joints::JointFlaw;
+use darrt_task::clock::ClockError;
 use darrt_task::problem_file::ProblemFileError;
 
 /// A plan that cannot be executed at all; one that fails when it is executed is no error.
@@ -34,14 +34,9 @@ pub enum ExecuteError {
         /// Why not.
         reason: String,
     },
-    /// A waypoint whose joints do not fit the robot.
-    #[error("{place}: {flaw}")]
-    Joints {
-        /// Path of the waypoint.
-        place: String,
-        /// What is wrong.
-        flaw: JointFlaw,
-    },
+    /// The plan has no clock, and none can be made for it.
+    #[error(transparent)]
+    Clock(#[from] ClockError),
     /// Something that the plan should have and does not.
     #[error("{place}: there is no {what} `{name}`")]
     Missing {

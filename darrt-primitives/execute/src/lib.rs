@@ -14,6 +14,8 @@
 
 pub mod error;
 pub mod goal;
+#[cfg(test)]
+mod known_cases;
 pub mod noise;
 mod robot;
 pub mod run;

@@ -2,7 +2,6 @@
 
 use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
 use darrt_primitives::kinematics::{link_bodies, mesh_folders};
-use darrt_task::plan_file::JointTable;
 use darrt_task::robot::RobotFacts;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rapier3d_f64::prelude::Pose;
@@ -17,7 +16,6 @@ const OPENINGS: u32 = 65;
 #[derive(Debug)]
 pub(crate) struct Robot {
     pub(crate) tree: KinematicTree,
-    pub(crate) table: JointTable,
     /// By link.
     pub(crate) pieces: Vec<Vec<Piece>>,
     /// The variables of the arm.
@@ -90,7 +88,6 @@ impl Robot {
         let between = between(&tree, &pieces, tool, tips);
         let hand = Hand::new(&tree, finger, tool, tips, between)?;
         Ok(Self {
-            table: JointTable::new(description, &tree),
             tree,
             pieces,
             arm,

@@ -14,7 +14,7 @@ use crate::goal::{self, Now, ObjectEnd};
 use crate::noise::{Draws, NoiseModel, PlanarError};
 use crate::robot::Robot;
 use crate::stage::{Owner, STEP_S, Scenery, Stage, TrueObject};
-use crate::timeline::{self, Grip, TimedStep};
+use crate::timeline::{TimedStep, Timeline};
 use crate::watch::{Cause, Departure, Event, Watch};
 
 /// Time that things are given to come to rest before the plan begins and when it is over, s.
@@ -30,7 +30,7 @@ pub struct Execution<'a> {
     robot: Robot,
     scenery: Scenery,
     scene: Scene,
-    steps: Vec<TimedStep>,
+    timeline: Timeline,
     starts: Vec<Isometry3<f64>>,
     depths: Vec<f64>,
 }
@@ -79,7 +79,7 @@ impl<'a> Execution<'a> {
         Ok(Self {
             problem,
             primitives: plan.steps.iter().map(|step| step.primitive.to_string()).collect(),
-            steps: timeline::steps(plan, &robot)?,
+            timeline: Timeline::new(plan, facts, &robot)?,
             scenery: Scenery::new(problem)?,
             robot,
             starts: geometry.objects.iter().map(|object| object.world_from_object).collect(),
@@ -90,7 +90,7 @@ impl<'a> Execution<'a> {
 
     /// Seconds that the plan takes on its clock.
     pub fn duration_s(&self) -> f64 {
-        self.steps.iter().map(TimedStep::duration_s).sum()
+        self.timeline.duration_s()
     }
 
     /// Executes the plan once; `None` if it was cancelled meanwhile.
@@ -121,7 +121,7 @@ impl<'a> Execution<'a> {
         }
         let mut now = Performance::begin(self, &objects, biases);
         let mut trail = Vec::new();
-        for (index, step) in self.steps.iter().enumerate() {
+        for (index, step) in self.timeline.steps.iter().enumerate() {
             if step.contract.drives() {
                 now.next_error = draws.drive(now.error);
             }
@@ -183,16 +183,12 @@ struct Performance<'a> {
 
 impl<'a> Performance<'a> {
     fn begin(of: &'a Execution<'a>, objects: &[TrueObject], biases: Vec<f64>) -> Self {
-        let first = of.steps.first().map(|step| step.at(0.0));
-        let (base, mut joints) = first.map_or_else(
-            || (of.problem.robot.base, of.robot.tree.neutral()),
-            |command| (command.base, command.joints),
-        );
+        let (base, mut joints) = of.timeline.start();
         add(&mut joints, &biases);
         let mut stage = Stage::new(&of.robot, &of.scenery, objects, base, &joints);
-        let grip = Grip::At(joints.get(of.robot.finger).copied().unwrap_or_default());
+        let finger = joints.get(of.robot.finger).copied().unwrap_or_default();
         for _ in 0..ticks(SETTLE_S) {
-            stage.step(base, &mut joints, grip);
+            stage.step(base, &mut joints, finger);
         }
         let watch = Watch::new(&stage, objects.len(), of.scenery.floor);
         let error = [0.0; 3];
@@ -214,26 +210,24 @@ impl<'a> Performance<'a> {
     /// Executes one step; true if that was the last.
     fn step(&mut self, index: usize, step: &TimedStep) -> bool {
         self.watch.begin(&self.stage, &self.planned);
-        let count = ticks(step.duration_s());
-        let closed_s = step.closed_s();
-        let lets_go_s = step.lets_go_s().unwrap_or(f64::INFINITY);
-        for tick in 1..=count {
-            let t = tick as f64 * STEP_S;
-            let mut command = step.at(t);
-            let error = [0, 1, 2].map(|i| self.error[i] + command.driven * (self.next_error[i] - self.error[i]));
+        let (length_s, mut elapsed) = (step.end_s - step.begin_s, 0);
+        let count = ticks(length_s);
+        while elapsed < count {
+            elapsed += 1;
+            let time_s = step.begin_s + elapsed as f64 * STEP_S;
+            let mut command = self.of.timeline.at(step, time_s, &self.of.robot);
+            let error = [0, 1, 2].map(|i| self.error[i] + command.done * (self.next_error[i] - self.error[i]));
             let base = [0, 1, 2].map(|i| command.base[i] + error[i]);
             add(&mut command.joints, &self.biases);
-            self.stage.step(base, &mut command.joints, command.grip);
+            self.stage.step(base, &mut command.joints, command.finger);
             self.ticks += 1;
-            let has_closed = closed_s.is_none_or(|closed| t >= closed) || step.contract.hand != HandUse::Takes;
-            let is_held = step.holds.is_some() && has_closed && t < lets_go_s;
+            let is_held = step.is_holding(time_s);
             let mut event = self.watch.touch(&self.stage, step, is_held);
-            if std::env::var("XD").is_ok_and(|x| x.split_once(':').is_some_and(|(s,f)| s.parse::<usize>().unwrap()==index+1 && { let (a,b)=f.split_once('-').unwrap(); a.parse::<f64>().unwrap()<=t/step.duration_s() && t/step.duration_s()<=b.parse::<f64>().unwrap() })) { let tw=self.stage.world_from_tool(); for o in 0..self.of.starts.len() { let a=tw.inverse()*self.stage.object(o); let (v,w)=self.stage.speeds(o); eprintln!("{} {:.4} grip {:?} w {:.5} obj-in-tool {:.2?} lean {:.3} v {:.4} w {:.3}", index+1, t, command.grip, self.stage.opening().half_width(), (1e3*a.translation.vector).as_slice(), goal::lean_deg(&self.stage.object(o),&Isometry3::identity()), v, w); } for c in self.stage.contacts() { if c.force.norm()>0.5 { eprintln!("     {:?} {:.5} {:.1?}", c.pair, c.depth_m, (tw.inverse()*c.force).as_slice()); } } }
-            if event.is_none() && (tick % LOOK_EVERY == 0 || tick == count) {
+            if event.is_none() && (elapsed % LOOK_EVERY == 0 || elapsed == count) {
                 event = self.watch.look(&self.stage, step, is_held);
             }
             if let Some(event) = event {
-                self.note(index, t / step.duration_s(), &event);
+                self.note(index, elapsed as f64 / count as f64, &event);
                 if self.is_stopped {
                     return true;
                 }
@@ -266,13 +260,13 @@ impl<'a> Performance<'a> {
     }
 
     fn report(mut self, run: u64, trail: Vec<StepEnd>) -> RunReport {
-        let last = self.of.steps.last();
+        let last = self.of.timeline.steps.last();
         if let (Some(step), false) = (last, self.is_stopped) {
-            let mut command = step.at(step.duration_s());
+            let mut command = self.of.timeline.at(step, step.end_s, &self.of.robot);
             add(&mut command.joints, &self.biases);
             let base = [0, 1, 2].map(|i| command.base[i] + self.error[i]);
             for _ in 0..ticks(SETTLE_S) {
-                self.stage.step(base, &mut command.joints, command.grip);
+                self.stage.step(base, &mut command.joints, command.finger);
             }
         }
         let held = last.filter(|step| step.contract.hand != HandUse::LetsGo).and_then(|step| step.holds);
@@ -308,7 +302,7 @@ impl<'a> Performance<'a> {
             lean_deg: object.lean_deg,
             force_n: 0.0,
         };
-        Some(self.of.departure(self.of.steps.len().saturating_sub(1), 1.0, &event))
+        Some(self.of.departure(self.of.timeline.steps.len().saturating_sub(1), 1.0, &event))
     }
 }
 

@@ -13,7 +13,6 @@ use rapier3d_f64::prelude::{
 use crate::error::ExecuteError;
 use crate::robot::{Opening, Robot, world_from_base};
 use crate::solids::{self, Piece};
-use crate::timeline::Grip;
 
 /// Time step, s. At 1/60 s pads sink into what they hold.
 pub(crate) const STEP_S: f64 = 1.0 / 240.0;
@@ -109,6 +108,20 @@ impl Scenery {
     }
 }
 
+#[cfg(test)]
+impl Scenery {
+    /// A room of one body.
+    pub(crate) fn of_pieces(pieces: Vec<Piece>) -> Self {
+        let fixed = pieces.into_iter().map(|piece| (0, piece)).collect();
+        Self { fixed, names: vec!["room".to_owned()], floor: None, objects: Vec::new() }
+    }
+
+    /// No room and one object.
+    pub(crate) fn of_object(pieces: Vec<Piece>) -> Self {
+        Self { fixed: Vec::new(), names: Vec::new(), floor: None, objects: vec![pieces] }
+    }
+}
+
 /// The hand in physics.
 #[derive(Debug)]
 struct Fingers {
@@ -155,6 +168,12 @@ pub(crate) fn empty_world() -> PhysicsWorld {
 
 fn groups(member: Group, with: Group) -> InteractionGroups {
     InteractionGroups::new(member, with, InteractionTestMode::And)
+}
+
+/// What the robot's solids meet.
+#[cfg(test)]
+pub(crate) fn robot_group() -> InteractionGroups {
+    groups(ROBOT, ROOM | TOUCHED)
 }
 
 fn collider(piece: &Piece, owner: Owner, friction: f64, groups: InteractionGroups) -> ColliderBuilder {
@@ -224,8 +243,8 @@ impl<'a> Stage<'a> {
 
     /// One time step, in which the robot goes to these values of base and joints.
     ///
-    /// The joint of the fingers stands where they are, whatever `joints` says of it; `grip` commands it.
-    pub(crate) fn step(&mut self, base: [f64; 3], joints: &mut [f64], grip: Grip) {
+    /// The joint of the fingers stands where they are, whatever `joints` says of it; `finger` commands it.
+    pub(crate) fn step(&mut self, base: [f64; 3], joints: &mut [f64], finger: f64) {
         let now = self.opening();
         if let Some(slot) = joints.get_mut(self.robot.finger) {
             *slot = now.joint;
@@ -235,7 +254,7 @@ impl<'a> Stage<'a> {
             go_to(&mut self.world, *handle, pose_of(&self.poses, *link));
         }
         go_to(&mut self.world, self.fingers.tool, pose_of(&self.poses, self.robot.tool));
-        self.fingers.command(&mut self.world, self.robot, grip, &now);
+        self.fingers.command(&mut self.world, self.robot, finger, &now);
         self.world.step();
     }
 
@@ -260,12 +279,6 @@ impl<'a> Stage<'a> {
     pub(crate) fn object(&self, index: usize) -> Isometry3<f64> {
         let body = self.objects.get(index).and_then(|handle| self.world.bodies.get(*handle));
         body.map_or_else(Isometry3::identity, |body| (*body.position()).into())
-    }
-
-    /// How fast an object is, m/s and rad/s.
-    pub(crate) fn speeds(&self, index: usize) -> (f64, f64) {
-        let body = self.objects.get(index).and_then(|handle| self.world.bodies.get(*handle));
-        body.map_or((0.0, 0.0), |body| (body.linvel().length(), body.angvel().length()))
     }
 
     /// Where the tool frame is.
@@ -378,9 +391,8 @@ impl Fingers {
 
     /// The two fingers are geared together: they follow a command as one, with the grip force at most, and what pushes both to
     /// one side is resisted by the stiffness of the gear.
-    fn command(&self, world: &mut PhysicsWorld, robot: &Robot, grip: Grip, now: &Opening) {
-        let (Grip::At(joint) | Grip::Closing(joint)) = grip;
-        let wanted = robot.hand.at_joint(joint);
+    fn command(&self, world: &mut PhysicsWorld, robot: &Robot, finger: f64, now: &Opening) {
+        let wanted = robot.hand.at_joint(finger);
         let [a, b] = self.offsets(world);
         let most = robot.grip_force_n / TIP_STIFFNESS;
         // How much farther open than commanded they are.
