@@ -34,6 +34,8 @@ pub(crate) struct Robot {
 #[derive(Debug)]
 pub(crate) struct Hand {
     openings: Vec<Opening>,
+    /// The links that are rigid to the tool or move with the fingers.
+    pub(crate) links: Vec<usize>,
     /// The links with solids between hand and tips: on the way to which tip, and the link.
     pub(crate) between: Vec<(usize, usize)>,
 }
@@ -70,7 +72,8 @@ impl Robot {
             let parts = body.parts.iter();
             parts.map(|part| solids::of_part(&body.name, &part.shape, &part.body_from_shape)).collect()
         };
-        let pieces: Vec<Vec<Piece>> = bodies.iter().map(|body| body.as_ref().map_or(Ok(Vec::new()), part)).collect::<Result<_, _>>()?;
+        let pieces: Vec<Vec<Piece>> =
+            bodies.iter().map(|body| body.as_ref().map_or(Ok(Vec::new()), part)).collect::<Result<_, _>>()?;
         let missing = |what, name: &str| ExecuteError::NoSuchPart { what, name: name.to_owned() };
         let link = |name: &str| tree.link_index(name).ok_or_else(|| missing("link", name));
         let variable = |name: &str| tree.variable_index(name).ok_or_else(|| missing("joint", name));
@@ -142,7 +145,7 @@ impl Hand {
         if openings.windows(2).any(|pair| matches!(pair, [a, b] if b.half_width() <= a.half_width())) {
             return Err(ExecuteError::Hand("its tips do not part as its finger joint grows".to_owned()));
         }
-        Ok(Self { openings, between })
+        Ok(Self { openings, links: hand_links(tree, finger, tool), between })
     }
 
     /// The closed hand.
@@ -165,11 +168,7 @@ impl Hand {
         let pair = self.openings.get(above - 1..=above);
         let Some([low, high]) = pair else {
             // There are always two.
-            return Opening {
-                joint: 0.0,
-                tool_from_tip: [Isometry3::identity(); 2],
-                tool_from_between: Vec::new(),
-            };
+            return Opening { joint: 0.0, tool_from_tip: [Isometry3::identity(); 2], tool_from_between: Vec::new() };
         };
         let part = ((value - key(low)) / (key(high) - key(low))).clamp(0.0, 1.0);
         let tip = |index: usize| low.tool_from_tip[index].lerp_slerp(&high.tool_from_tip[index], part);
@@ -180,6 +179,25 @@ impl Hand {
             tool_from_between: between.map(|(low, high)| low.lerp_slerp(high, part)).collect(),
         }
     }
+}
+
+/// All that moves with the hand: links that only fixed joints and those of the fingers part from the tool.
+fn hand_links(tree: &KinematicTree, finger: usize, tool: usize) -> Vec<usize> {
+    let is_own = |link: usize| match tree.motion(link) {
+        Some(LinkMotion::Turning { drive, .. } | LinkMotion::Sliding { drive, .. }) => drive.variable == finger,
+        Some(LinkMotion::Fixed) => true,
+        None => false,
+    };
+    let mut root = tool;
+    while root > 0 && is_own(root) {
+        root = tree.parent(root).unwrap_or(0);
+    }
+    let mut is_hand = vec![false; tree.link_count()];
+    for link in root..tree.link_count() {
+        let is_below = link > 0 && is_own(link) && tree.parent(link).is_some_and(|parent| is_hand[parent]);
+        is_hand[link] = link == root || is_below;
+    }
+    (0..tree.link_count()).filter(|link| is_hand[*link]).collect()
 }
 
 /// The links above the tips that the hand itself is not on: with solids, and below the last one that tool and tip share.

@@ -38,9 +38,7 @@ impl Piece {
 pub(crate) fn of_object(name: &str, shape: &ShapeSpec) -> Result<Vec<Piece>, ExecuteError> {
     let flaw = |reason: &str| ExecuteError::Solid { body: name.to_owned(), reason: reason.to_owned() };
     match shape {
-        ShapeSpec::Box { size: [x, y, z] } => {
-            Ok(vec![Piece::centred(SharedShape::cuboid(x / 2.0, y / 2.0, z / 2.0))])
-        }
+        ShapeSpec::Box { size: [x, y, z] } => Ok(vec![Piece::centred(SharedShape::cuboid(x / 2.0, y / 2.0, z / 2.0))]),
         ShapeSpec::Sphere { radius } => Ok(vec![Piece::centred(SharedShape::ball(*radius))]),
         ShapeSpec::Cylinder { radius, height } => Ok(vec![cylinder(*radius, height / 2.0, 0.0)]),
         ShapeSpec::Capsule { radius, height } => {

@@ -5,9 +5,9 @@
 use darrt_task::problem_file::{ProblemFile, geometry::FLOOR};
 use nalgebra::{Isometry3, Vector3};
 use rapier3d_f64::prelude::{
-    ActiveCollisionTypes, CoefficientCombineRule, ColliderBuilder, ColliderHandle, FrictionModel, GenericJointBuilder, Group,
-    ImpulseJointHandle, InteractionGroups, InteractionTestMode, JointAxesMask, JointAxis, MotorModel, PhysicsWorld,
-    Pose, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients, Vector,
+    ActiveCollisionTypes, CoefficientCombineRule, ColliderBuilder, ColliderHandle, FrictionModel, GenericJoint,
+    GenericJointBuilder, Group, ImpulseJointHandle, InteractionGroups, InteractionTestMode, JointAxesMask, JointAxis,
+    MassProperties, MotorModel, PhysicsWorld, Pose, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients, Vector,
 };
 
 use crate::error::ExecuteError;
@@ -30,6 +30,20 @@ const TIP_KG: f64 = 1.0;
 const TIP_STIFFNESS: f64 = 20_000.0;
 /// and the damping that makes this critical, N s/m.
 const TIP_DAMPING: f64 = 283.0;
+
+/// How the hand yields against where the arm has it, N/m: about what position gains of 1200 to 2400 N m/rad in the shoulder give
+/// at 0.7 m from it.
+const ARM_STIFFNESS: f64 = 4000.0;
+/// The same for turning, N m/rad.
+const ARM_TURNING_STIFFNESS: f64 = 500.0;
+/// Mass of the hand without its fingers, kg,
+const PALM_KG: f64 = 2.0;
+/// and its moment of inertia with them and what it holds, kg m^2.
+const HAND_INERTIA: f64 = 0.05;
+/// An arm presses at most this many times harder than it is planned to push.
+const STALL: f64 = 2.0;
+/// The lever with which it then turns the hand, m.
+const STALL_LEVER_M: f64 = 0.3;
 
 /// Fingers nearer than this to being closed altogether have nothing between them, m.
 const CLOSED_M: f64 = 0.0005;
@@ -127,8 +141,10 @@ impl Scenery {
 struct Fingers {
     tips: [RigidBodyHandle; 2],
     joints: [ImpulseJointHandle; 2],
-    /// Moves as the tool frame does.
-    tool: RigidBodyHandle,
+    /// Where the arm has the tool frame,
+    arm: RigidBodyHandle,
+    /// and the hand, which yields: its frame is the tool frame.
+    palm: RigidBodyHandle,
     /// The solids of the links between hand and tip: which tip, which of [`Hand`](crate::robot::Hand)'s links, and where in it.
     between: Vec<(usize, usize, Pose, ColliderHandle)>,
 }
@@ -138,7 +154,7 @@ pub(crate) struct Stage<'a> {
     robot: &'a Robot,
     pub(crate) world: PhysicsWorld,
     objects: Vec<RigidBodyHandle>,
-    /// Links with solids but for the fingers.
+    /// Links with solids but for those of the hand.
     links: Vec<(usize, RigidBodyHandle)>,
     fingers: Fingers,
     poses: Vec<Isometry3<f64>>,
@@ -230,14 +246,14 @@ impl<'a> Stage<'a> {
         robot.link_poses(&world_from_base(base), joints, &mut poses);
         let mut links = Vec::new();
         for (link, pieces) in robot.pieces.iter().enumerate() {
-            if pieces.is_empty() || robot.tips.contains(&link) || robot.hand.between.iter().any(|(_, at)| *at == link) {
+            if pieces.is_empty() || robot.hand.links.contains(&link) {
                 continue;
             }
             let body = RigidBodyBuilder::kinematic_position_based().pose(pose_of(&poses, link));
             links.push((link, add_link(&mut world, robot, link, body)));
         }
         let opening = robot.hand.at_joint(joints.get(robot.finger).copied().unwrap_or_default());
-        let fingers = Fingers::new(&mut world, robot, &pose_of(&poses, robot.tool).into(), &opening);
+        let fingers = Fingers::new(&mut world, robot, &poses, &opening);
         Self { robot, world, objects, links, fingers, poses }
     }
 
@@ -253,7 +269,7 @@ impl<'a> Stage<'a> {
         for (link, handle) in &self.links {
             go_to(&mut self.world, *handle, pose_of(&self.poses, *link));
         }
-        go_to(&mut self.world, self.fingers.tool, pose_of(&self.poses, self.robot.tool));
+        go_to(&mut self.world, self.fingers.arm, pose_of(&self.poses, self.robot.tool));
         self.fingers.command(&mut self.world, self.robot, finger, &now);
         self.world.step();
     }
@@ -283,8 +299,16 @@ impl<'a> Stage<'a> {
 
     /// Where the tool frame is.
     pub(crate) fn world_from_tool(&self) -> Isometry3<f64> {
-        let body = self.world.bodies.get(self.fingers.tool);
-        body.map_or_else(Isometry3::identity, |body| (*body.position()).into())
+        self.pose(self.fingers.palm)
+    }
+
+    /// How far the hand is from where the arm has it, m.
+    pub(crate) fn lag_m(&self) -> f64 {
+        (self.pose(self.fingers.arm).translation.vector - self.world_from_tool().translation.vector).norm()
+    }
+
+    fn pose(&self, body: RigidBodyHandle) -> Isometry3<f64> {
+        self.world.bodies.get(body).map_or_else(Isometry3::identity, |body| (*body.position()).into())
     }
 
     /// Every touching pair: who, how deep (m), and the force on the first (N).
@@ -346,8 +370,22 @@ fn link_solid(piece: &Piece, link: usize) -> ColliderBuilder {
 }
 
 impl Fingers {
-    fn new(world: &mut PhysicsWorld, robot: &Robot, world_from_tool: &Isometry3<f64>, opening: &Opening) -> Self {
-        let tool = world.bodies.insert(RigidBodyBuilder::kinematic_position_based().pose((*world_from_tool).into()));
+    fn new(world: &mut PhysicsWorld, robot: &Robot, poses: &[Isometry3<f64>], opening: &Opening) -> Self {
+        let at_tool = pose_of(poses, robot.tool);
+        let world_from_tool: Isometry3<f64> = at_tool.into();
+        let arm = world.bodies.insert(RigidBodyBuilder::kinematic_position_based().pose(at_tool));
+        let mass = MassProperties::new(Vector::ZERO, PALM_KG, Vector::splat(HAND_INERTIA));
+        let palm = RigidBodyBuilder::dynamic().pose(at_tool).additional_mass_properties(mass).gravity_scale(0.0);
+        let palm = world.bodies.insert(palm.can_sleep(false));
+        let is_finger = |link| robot.tips.contains(&link) || robot.hand.between.iter().any(|(_, at)| *at == link);
+        for link in robot.hand.links.iter().copied().filter(|link| !is_finger(*link)) {
+            let tool_from_link = at_tool.inverse() * pose_of(poses, link);
+            for piece in robot.pieces.get(link).into_iter().flatten() {
+                let solid = link_solid(piece, link).position(tool_from_link * piece.body_from_piece);
+                world.colliders.insert_with_parent(solid, palm, &mut world.bodies);
+            }
+        }
+        world.impulse_joints.insert(arm, palm, yielding(STALL * robot.push_force_n), true);
         let tip = |world: &mut PhysicsWorld, index: usize| {
             let mass = robot.pieces.get(robot.tips[index]).map(|pieces| solids::mass_properties(pieces, TIP_KG));
             let body = RigidBodyBuilder::dynamic()
@@ -368,7 +406,7 @@ impl Fingers {
                 .motor_position(JointAxis::LinY, opening.tool_from_tip[index].translation.y, TIP_STIFFNESS, TIP_DAMPING)
                 // The gripper presses with its force, and its gear bears as much again from one side.
                 .motor_max_force(JointAxis::LinY, 2.0 * robot.grip_force_n);
-            world.impulse_joints.insert(tool, tips[index], joint, true)
+            world.impulse_joints.insert(palm, tips[index], joint, true)
         });
         let mut between = Vec::new();
         for (index, (tip, link)) in robot.hand.between.iter().enumerate() {
@@ -379,13 +417,13 @@ impl Fingers {
                 between.push((*tip, index, piece.body_from_piece, solid));
             }
         }
-        Self { tips, joints, tool, between }
+        Self { tips, joints, arm, palm, between }
     }
 
     /// Where the tips are along the opening axis of the tool, metres.
     fn offsets(&self, world: &PhysicsWorld) -> [f64; 2] {
         let pose = |handle| world.bodies.get(handle).map_or(Pose::IDENTITY, |body| *body.position());
-        let tool_from_world = pose(self.tool).inverse();
+        let tool_from_world = pose(self.palm).inverse();
         self.tips.map(|tip| (tool_from_world * pose(tip)).translation.y)
     }
 
@@ -412,6 +450,28 @@ impl Fingers {
             }
         }
     }
+}
+
+/// What holds the hand where the arm has it: springs in all six directions, with limited force.
+fn yielding(most_n: f64) -> GenericJoint {
+    let straight = damping(ARM_STIFFNESS, PALM_KG + 2.0 * TIP_KG);
+    let turning = damping(ARM_TURNING_STIFFNESS, HAND_INERTIA);
+    let axes = [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ].map(|axis| (axis, ARM_STIFFNESS, straight, most_n));
+    let turns = [JointAxis::AngX, JointAxis::AngY, JointAxis::AngZ];
+    let turns = turns.map(|axis| (axis, ARM_TURNING_STIFFNESS, turning, most_n * STALL_LEVER_M));
+    let mut joint = GenericJoint::new(JointAxesMask::empty());
+    for (axis, stiffness, damping, most) in axes.into_iter().chain(turns) {
+        joint.set_motor_model(axis, MotorModel::ForceBased);
+        joint.set_motor_position(axis, 0.0, stiffness, damping);
+        joint.set_motor_max_force(axis, most);
+    }
+    joint.set_contacts_enabled(false);
+    joint
+}
+
+/// Damping with which a mass on a spring comes to rest soonest.
+fn damping(stiffness: f64, mass: f64) -> f64 {
+    2.0 * (stiffness * mass).sqrt()
 }
 
 /// Frames of the joint between tool and tip: it slides along the y axis of the tool, through the middle of the hand.

@@ -67,7 +67,8 @@ impl Timeline {
     pub(crate) fn new(plan: &PlanFile, facts: &RobotFacts, robot: &Robot) -> Result<Self, ExecuteError> {
         let timed = TimedPlan::new(plan, facts)?;
         let steps = plan.steps.iter().enumerate();
-        let steps = steps.map(|(index, step)| timed_step(&timed, plan, robot, index, step)).collect::<Result<_, _>>()?;
+        let steps =
+            steps.map(|(index, step)| timed_step(&timed, plan, robot, index, step)).collect::<Result<_, _>>()?;
         Ok(Self { plan: timed, steps })
     }
 

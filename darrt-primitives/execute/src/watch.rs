@@ -1,7 +1,7 @@
 //! What goes otherwise than planned, as it happens: the first departure is the cause of what follows.
 
 use darrt_primitives::contract::{Contract, HandUse};
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::Isometry3;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -19,8 +19,8 @@ const LOST_M: f64 = 0.10;
 const LEFT: (f64, f64) = (0.01, 3.0);
 /// How deep the robot may seem to be in the room before it counts as run into it, metres: the plan may touch.
 const BUMP_M: f64 = 0.001;
-/// An arm that presses this many times harder than it pushes stops by itself.
-const STALL: f64 = 2.0;
+/// A hand so far from where the arm has it is held up, metres: a controller gives up there.
+const HELD_UP_M: f64 = 0.02;
 /// Forces are told from knocks by their mean over so long, s.
 const FORCE_MEAN_S: f64 = 0.05;
 /// What what is held presses on the room with while the hand carries it, N: more is running into something.
@@ -32,7 +32,7 @@ const HELD_HIT_N: f64 = 2.0;
 pub enum Cause {
     /// The robot ran into something that stands fast.
     Bumped,
-    /// The robot pressed on an object, or with a finger on the room, harder than its arm can.
+    /// The hand was held up by something on which it pressed with all that the arm has.
     Pressed,
     /// Something that should have rested was moved.
     Moved,
@@ -59,7 +59,7 @@ impl Cause {
     pub const fn words(self) -> &'static str {
         match self {
             Self::Bumped => "the robot ran into the room",
-            Self::Pressed => "the robot pressed too hard",
+            Self::Pressed => "held up, pressing on",
             Self::Moved => "moved though it should rest",
             Self::Missed => "missed by the closing hand",
             Self::Settled => "turned or slid when gripped",
@@ -123,18 +123,14 @@ impl Event {
 pub(crate) struct Watch {
     floor: Option<usize>,
     is_base: Vec<bool>,
-    tips: [usize; 2],
-    stall_n: f64,
+    hand: Vec<usize>,
+    tool: usize,
     /// By object: where it stood when the step began.
     began: Vec<Isometry3<f64>>,
     /// By object: how far it was from the plan then.
     off: Vec<f64>,
     /// By object: where it is in the hand since the hand has settled.
     in_hand: Vec<Option<Isometry3<f64>>>,
-    /// By object: mean force of the robot on it.
-    pressed: Vec<Vector3<f64>>,
-    /// By tip: mean force of the room on it.
-    tip_pressed: [Vector3<f64>; 2],
     /// By object: mean force of the room on it.
     borne: Vec<f64>,
 }
@@ -145,13 +141,11 @@ impl Watch {
         Self {
             floor,
             is_base: robot.is_base.clone(),
-            tips: robot.tips,
-            stall_n: STALL * robot.push_force_n,
+            hand: robot.hand.links.clone(),
+            tool: robot.tool,
             began: (0..count).map(|object| stage.object(object)).collect(),
             off: vec![0.0; count],
             in_hand: vec![None; count],
-            pressed: vec![Vector3::zeros(); count],
-            tip_pressed: [Vector3::zeros(); 2],
             borne: vec![0.0; count],
         }
     }
@@ -168,28 +162,21 @@ impl Watch {
 
     /// Looks at forces and depths after one time step.
     pub(crate) fn touch(&mut self, stage: &Stage<'_>, step: &TimedStep, is_held: bool) -> Option<Event> {
-        let mut on_object = vec![Vector3::zeros(); self.pressed.len()];
         let mut from_room = vec![0.0; self.borne.len()];
-        let mut on_tip = [Vector3::zeros(); 2];
         let mut bump: Option<Event> = None;
-        let mut toucher = None;
+        let mut strongest: Option<(f64, Owner)> = None;
         for Contact { pair, depth_m, force } in stage.contacts() {
             match pair {
-                (Owner::Room(body), Owner::Link(link)) => {
-                    if let Some(tip) = self.tips.iter().position(|tip| *tip == link) {
-                        on_tip[tip] -= force;
-                        continue;
+                (other, Owner::Link(link)) if self.hand.contains(&link) => {
+                    if strongest.is_none_or(|(most, _)| force.norm() > most) {
+                        strongest = Some((force.norm(), other));
                     }
+                }
+                (Owner::Room(body), Owner::Link(link)) => {
                     let is_wheel = Some(body) == self.floor && self.is_base.get(link) == Some(&true);
                     if depth_m > BUMP_M && !is_wheel && bump.is_none_or(|event| event.off_m < depth_m) {
                         let event = Event::new(Cause::Bumped, pair.1, depth_m, 0.0);
                         bump = Some(Event { other: Some(pair.0), ..event });
-                    }
-                }
-                (Owner::Object(object), Owner::Link(_)) => {
-                    if let Some(sum) = on_object.get_mut(object) {
-                        *sum += force;
-                        toucher = Some(pair.1);
                     }
                 }
                 (Owner::Room(_), Owner::Object(object)) => {
@@ -201,27 +188,17 @@ impl Watch {
             }
         }
         let share = STEP_S / FORCE_MEAN_S;
-        for (mean, now) in self.pressed.iter_mut().zip(&on_object).chain(self.tip_pressed.iter_mut().zip(&on_tip)) {
-            *mean += share * (now - *mean);
-        }
         for (mean, now) in self.borne.iter_mut().zip(&from_room) {
             *mean += share * (now - *mean);
         }
-        bump.or_else(|| self.press(toucher)).or_else(|| self.hit(step, is_held))
+        bump.or_else(|| self.held_up(stage, strongest)).or_else(|| self.hit(step, is_held))
     }
 
-    fn press(&self, toucher: Option<Owner>) -> Option<Event> {
-        let event = |body, other, force: &Vector3<f64>| Event {
-            other,
-            force_n: force.norm(),
-            ..Event::new(Cause::Pressed, body, 0.0, 0.0)
-        };
-        let objects = self.pressed.iter().enumerate();
-        let mut objects = objects.map(|(object, force)| event(Owner::Object(object), toucher, force));
-        let tips = self.tips.iter().zip(&self.tip_pressed);
-        let mut tips = tips.map(|(tip, force)| event(Owner::Link(*tip), None, force));
-        let is_over = |event: &Event| event.force_n > self.stall_n;
-        objects.find(is_over).or_else(|| tips.find(is_over))
+    fn held_up(&self, stage: &Stage<'_>, strongest: Option<(f64, Owner)>) -> Option<Event> {
+        let lag_m = stage.lag_m();
+        let (force_n, other) = strongest.unzip();
+        let event = Event::new(Cause::Pressed, Owner::Link(self.tool), lag_m, 0.0);
+        (lag_m > HELD_UP_M).then(|| Event { other, force_n: force_n.unwrap_or(0.0), ..event })
     }
 
     /// Does what is carried press on the room, where it is neither lifted nor set down?
