@@ -2,6 +2,7 @@
 //! another engine gives.
 
 #![allow(clippy::unwrap_used, reason = "a test says what is wrong by panicking")]
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of time steps")]
 
 use darrt_primitives::kinematics::RobotDescription;
 use darrt_primitives::push::Friction;

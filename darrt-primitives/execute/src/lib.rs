@@ -8,11 +8,12 @@
 //! | what went wrong first? | [`watch`] |
 //! | is it where it should be? | [`goal`] |
 //! | when is the robot where? | `timeline` |
-//! | what is the world made of? | `stage`, `solids`, `robot` |
+//! | what is the world made of? | `stage`, `solids`, `robot`, `fingers` |
 //!
 //! Metres, kilograms, seconds, radians; the floor is z = 0, z up. The engine is rapier; its types stay inside.
 
 pub mod error;
+mod fingers;
 pub mod goal;
 #[cfg(test)]
 mod known_cases;
