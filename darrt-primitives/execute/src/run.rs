@@ -46,6 +46,8 @@ pub struct RunReport {
     pub is_near: bool,
     /// The first departure from the plan; in a run that succeeds all the same, a small one.
     pub departure: Option<Departure>,
+    /// What ended the run before its plan did.
+    pub stopped: Option<Departure>,
     /// Where the objects end.
     pub objects: Vec<ObjectEnd>,
     /// Where they were after every step.
@@ -175,7 +177,7 @@ struct Performance<'a> {
     error: PlanarError,
     next_error: PlanarError,
     departure: Option<Departure>,
-    is_stopped: bool,
+    stopped: Option<Departure>,
     ticks: u64,
     /// By object.
     planned: Vec<Isometry3<f64>>,
@@ -193,18 +195,7 @@ impl<'a> Performance<'a> {
         let watch = Watch::new(&stage, objects.len(), of.scenery.floor);
         let error = [0.0; 3];
         let planned = of.starts.clone();
-        Self {
-            of,
-            stage,
-            watch,
-            biases,
-            error,
-            next_error: error,
-            departure: None,
-            is_stopped: false,
-            ticks: 0,
-            planned,
-        }
+        Self { of, stage, watch, biases, error, next_error: error, departure: None, stopped: None, ticks: 0, planned }
     }
 
     /// Executes one step; true if that was the last.
@@ -228,7 +219,7 @@ impl<'a> Performance<'a> {
             }
             if let Some(event) = event {
                 self.note(index, elapsed as f64 / count as f64, &event);
-                if self.is_stopped {
+                if self.stopped.is_some() {
                     return true;
                 }
             }
@@ -246,7 +237,9 @@ impl<'a> Performance<'a> {
         if self.departure.is_none() {
             self.departure = Some(self.of.departure(step, time, event));
         }
-        self.is_stopped |= event.is_final();
+        if event.is_final() {
+            self.stopped = Some(self.of.departure(step, time, event));
+        }
     }
 
     fn end_of(&self, index: usize, step: &TimedStep) -> StepEnd {
@@ -261,7 +254,7 @@ impl<'a> Performance<'a> {
 
     fn report(mut self, run: u64, trail: Vec<StepEnd>) -> RunReport {
         let last = self.of.timeline.steps.last();
-        if let (Some(step), false) = (last, self.is_stopped) {
+        if let (Some(step), false) = (last, self.stopped.is_some()) {
             let mut command = self.of.timeline.at(step, step.end_s, &self.of.robot);
             add(&mut command.joints, &self.biases);
             let base = [0, 1, 2].map(|i| command.base[i] + self.error[i]);
@@ -281,13 +274,22 @@ impl<'a> Performance<'a> {
             goal::end(self.of.problem, &self.of.scene, &object.name, &now)
         });
         let objects: Vec<ObjectEnd> = objects.collect();
-        let is_success = !self.is_stopped && objects.iter().all(|object| object.is_there);
-        let is_near = !self.is_stopped && objects.iter().all(|object| object.is_near);
+        let is_success = self.stopped.is_none() && objects.iter().all(|object| object.is_there);
+        let is_near = self.stopped.is_none() && objects.iter().all(|object| object.is_near);
         if !is_success && self.departure.is_none() {
             self.departure = self.added_up(&objects);
         }
         let seconds = self.ticks as f64 * STEP_S;
-        RunReport { run, is_success, is_near, departure: self.departure, objects, trail, seconds }
+        RunReport {
+            run,
+            is_success,
+            is_near,
+            departure: self.departure,
+            stopped: self.stopped,
+            objects,
+            trail,
+            seconds,
+        }
     }
 
     /// What is off at the end though nothing was far off on the way.
