@@ -14,7 +14,7 @@ fn an_inverse_allocates_nothing() {
         let (tool, options) = (Isometry3::identity(), InverseOptions::default());
         let inverse = ChainInverse::new(&tree, arms::BASE, arms::TOOL, &tool, options).unwrap();
         let middle = |limit: &darrt_primitives::kinematics::JointLimit| {
-            if limit.is_unlimited() { 0.3 } else { 0.5 * (limit.lower + limit.upper) + 0.3 }
+            if limit.is_unlimited() { 0.3 } else { 0.4 * limit.lower + 0.6 * limit.upper }
         };
         let joints: Vec<f64> = inverse.limits().iter().map(middle).collect();
         let pose = inverse.base_from_tool(&joints).unwrap();

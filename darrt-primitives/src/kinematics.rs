@@ -4,10 +4,12 @@
 //! |---|---|
 //! | is this text safe to hand to an XML reader? | [`guard`] |
 //! | is this robot description sound? | [`urdf`] |
+//! | what are its groups, postures, hands, harmless pairs? | [`srdf`] |
 //! | between which values may a joint stand? | [`limit`] |
 //! | where are all links? | [`tree`] |
 //! | where are they in many configurations at once? | [`batch`], in the arithmetic of [`lanes`] |
 //! | what do the links occupy? | [`collision`] |
+//! | which pairs of links need a collision check? | [`pair_sampling`] |
 //! | how does a link move when one joint moves? | [`jacobian`] |
 //! | which joint values bring a link to a pose? | [`chain_inverse`] |
 //!
@@ -20,6 +22,8 @@ pub mod guard;
 pub mod jacobian;
 pub mod lanes;
 pub mod limit;
+pub mod pair_sampling;
+pub mod srdf;
 pub mod tree;
 pub mod urdf;
 
@@ -28,5 +32,7 @@ pub use chain_inverse::{ChainInverse, InverseOptions, JointValues, MOST_JOINTS};
 pub use collision::{folders_above, link_bodies, mesh_folders, no_meshes};
 pub use jacobian::Chain;
 pub use limit::JointLimit;
+pub use pair_sampling::{PairFate, SampledPairs, sample_pairs};
+pub use srdf::{SemanticDescription, SrdfError};
 pub use tree::{KinematicTree, KinematicsError};
 pub use urdf::{RobotDescription, UrdfError};

@@ -3,6 +3,7 @@
 //! | target | asks |
 //! |---|---|
 //! | `urdf_reader` | a robot description is refused, or keeps the laws of `RobotDescription` and can be built |
+//! | `srdf_reader` | a semantic description is refused, or all its names are those of the robot |
 //! | `problem_reader` | a problem file is refused, or survives being written as TOML and as JSON; its geometry can be built |
 //! | `problem_planner` | a problem that reads is refused by the planner, or a few iterations keep the accounts balanced |
 //! | `plan_reader` | a plan file is refused, or survives being written |
