@@ -10,6 +10,7 @@
 //! | where are they in many configurations at once? | [`batch`], in the arithmetic of [`lanes`] |
 //! | what do the links occupy? | [`collision`] |
 //! | which pairs of links need a collision check? | [`pair_sampling`] |
+//! | where do their meshes lie? | [`mesh_places`] |
 //! | how does a link move when one joint moves? | [`jacobian`] |
 //! | which joint values bring a link to a pose? | [`chain_inverse`] |
 //!
@@ -22,6 +23,7 @@ pub mod guard;
 pub mod jacobian;
 pub mod lanes;
 pub mod limit;
+pub mod mesh_places;
 pub mod pair_sampling;
 pub mod srdf;
 pub mod tree;
@@ -32,6 +34,7 @@ pub use chain_inverse::{ChainInverse, InverseOptions, JointValues, MOST_JOINTS};
 pub use collision::{folders_above, link_bodies, mesh_folders, no_meshes};
 pub use jacobian::Chain;
 pub use limit::JointLimit;
+pub use mesh_places::MeshPlaces;
 pub use pair_sampling::{PairFate, SampledPairs, sample_pairs};
 pub use srdf::{SemanticDescription, SrdfError};
 pub use tree::{KinematicTree, KinematicsError};

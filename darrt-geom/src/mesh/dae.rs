@@ -26,8 +26,7 @@ const MOST_VISITS: usize = 100_000;
 
 /// Reads the scene of a COLLADA file.
 pub(super) fn dae(shown: &str, bytes: &[u8]) -> Result<Soup, GeomError> {
-    let malformed =
-        |reason: String| GeomError::Malformed { path: shown.to_owned(), format: "COLLADA", reason };
+    let malformed = |reason: String| GeomError::Malformed { path: shown.to_owned(), format: "COLLADA", reason };
     let text = std::str::from_utf8(bytes).map_err(|error| malformed(error.to_string()))?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     if text.matches("xmlns").take(MOST_NAMESPACES + 1).count() > MOST_NAMESPACES {
@@ -79,7 +78,9 @@ impl<'a> File<'a> {
         while let Some((node, above)) = stack.pop() {
             visits += 1;
             if visits > MOST_VISITS {
-                return Err(self.wrong(node, format!("the scene has more than {MOST_VISITS} nodes, or one that holds itself")));
+                return Err(
+                    self.wrong(node, format!("the scene has more than {MOST_VISITS} nodes, or one that holds itself"))
+                );
             }
             let from_node = above * self.transform(node)?;
             for part in node.children().filter(Node::is_element) {
@@ -93,7 +94,9 @@ impl<'a> File<'a> {
                         }
                     }
                     "instance_controller" => {
-                        return Err(self.wrong(part, "a mesh that bends (<instance_controller>) is not read".to_owned()));
+                        return Err(
+                            self.wrong(part, "a mesh that bends (<instance_controller>) is not read".to_owned())
+                        );
                     }
                     _ => {}
                 }
@@ -140,7 +143,9 @@ impl<'a> File<'a> {
         let count = numbers.len();
         match <[f64; N]>::try_from(numbers) {
             Ok(numbers) if numbers.iter().all(|x| x.is_finite()) => Ok(numbers),
-            _ => Err(self.wrong(node, format!("<{}> needs {N} finite numbers and has {count}", node.tag_name().name()))),
+            _ => {
+                Err(self.wrong(node, format!("<{}> needs {N} finite numbers and has {count}", node.tag_name().name())))
+            }
         }
     }
 
@@ -170,9 +175,10 @@ impl<'a> File<'a> {
         })
     }
 
-    fn wrong(&self, node: Node<'_, '_>, reason: String) -> GeomError {
+    fn wrong(&self, node: Node<'_, '_>, mut reason: String) -> GeomError {
         let line = self.document.text_pos_at(node.range().start).row;
-        GeomError::Malformed { path: self.shown.to_owned(), format: "COLLADA", reason: format!("line {line}: {reason}") }
+        reason.insert_str(0, &format!("line {line}: "));
+        GeomError::Malformed { path: self.shown.to_owned(), format: "COLLADA", reason }
     }
 }
 

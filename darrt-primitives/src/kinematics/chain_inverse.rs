@@ -200,8 +200,8 @@ impl ChainInverse {
             let square = error.square();
             best = square.min(best);
             let then = &mut before[iteration % STUCK_AFTER];
-            // Not a number ends here too.
-            if !(best < STUCK_RATIO * *then) {
+            // An error that is no number is never the best one, so that it ends here too.
+            if best >= STUCK_RATIO * *then {
                 return End::Stuck;
             }
             *then = best;

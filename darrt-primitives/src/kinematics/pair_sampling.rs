@@ -305,10 +305,7 @@ mod tests {
         let tree = KinematicTree::new(&robot).unwrap();
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(0);
         let bodies = vec![None; tree.link_count()];
-        assert_eq!(
-            sample_pairs(&tree, &bodies, 0.0, 0, &mut rng),
-            Err(PairSamplingError::NoSample { samples: 0 })
-        );
+        assert_eq!(sample_pairs(&tree, &bodies, 0.0, 0, &mut rng), Err(PairSamplingError::NoSample { samples: 0 }));
         assert!(sample_pairs(&tree, &bodies[1..], 0.0, 1, &mut rng).is_err());
         assert!(sample_pairs(&tree, &bodies, 0.0, 1, &mut rng).unwrap().pairs.is_empty());
     }

@@ -14,6 +14,9 @@ use crate::mesh::MAXIMUM_TRIANGLES;
 /// Most numbers of one corner of a polygon.
 const WIDEST: usize = 64;
 
+/// How many numbers a corner has, which of them is its vertex, and where the vertices are.
+type Inputs = (usize, usize, Rc<[Point3<f64>]>);
+
 /// What has been read of a file, by the number of its XML node.
 #[derive(Default)]
 pub(super) struct Geometries {
@@ -25,16 +28,13 @@ pub(super) struct Geometries {
 
 impl Geometries {
     /// The triangles of a `<geometry>`.
-    pub(super) fn triangles<'a>(
-        &mut self,
-        file: &File<'a>,
-        geometry: Node<'a, 'a>,
-    ) -> Result<Vec<Corners>, GeomError> {
+    pub(super) fn triangles<'a>(&mut self, file: &File<'a>, geometry: Node<'a, 'a>) -> Result<Vec<Corners>, GeomError> {
         if let Some(known) = self.triangles.get(&geometry.id().get_usize()) {
             return Ok(known.to_vec());
         }
-        let mesh = child(geometry, "mesh")
-            .ok_or_else(|| file.wrong(geometry, "this <geometry> has no <mesh>; other kinds are not read".to_owned()))?;
+        let mesh = child(geometry, "mesh").ok_or_else(|| {
+            file.wrong(geometry, "this <geometry> has no <mesh>; other kinds are not read".to_owned())
+        })?;
         let mut triangles = Vec::new();
         for part in mesh.children().filter(Node::is_element) {
             if matches!(part.tag_name().name(), "triangles" | "polylist" | "polygons" | "tristrips" | "trifans") {
@@ -61,9 +61,12 @@ impl Geometries {
             let point = vertex.and_then(|vertex| vertices.get(vertex as usize)).copied();
             point.ok_or_else(|| {
                 let count = vertices.len();
-                file.wrong(part, vertex.map_or("a corner is missing in <p>".to_owned(), |vertex| {
-                    format!("a corner is vertex {vertex}, but only {count} exist")
-                }))
+                file.wrong(
+                    part,
+                    vertex.map_or("a corner is missing in <p>".to_owned(), |vertex| {
+                        format!("a corner is vertex {vertex}, but only {count} exist")
+                    }),
+                )
             })
         };
         let mut triangle = |list: &[u32], corners: [usize; 3]| -> Result<(), GeomError> {
@@ -79,7 +82,9 @@ impl Geometries {
         for list in &lists {
             if !list.len().is_multiple_of(width) {
                 let (numbers, each) = (list.len(), width);
-                return Err(file.wrong(part, format!("<p> has {numbers} numbers, no multiple of the {each} of a corner")));
+                return Err(
+                    file.wrong(part, format!("<p> has {numbers} numbers, no multiple of the {each} of a corner"))
+                );
             }
             let count = list.len() / width;
             match part.tag_name().name() {
@@ -109,11 +114,7 @@ impl Geometries {
     }
 
     /// How many numbers a corner has, which of them is its vertex, and where the vertices are.
-    fn inputs<'a>(
-        &mut self,
-        file: &File<'a>,
-        part: Node<'a, 'a>,
-    ) -> Result<(usize, usize, Rc<[Point3<f64>]>), GeomError> {
+    fn inputs<'a>(&mut self, file: &File<'a>, part: Node<'a, 'a>) -> Result<Inputs, GeomError> {
         let (mut width, mut vertex) = (1, None);
         for input in part.children().filter(|child| child.tag_name().name() == "input") {
             let offset = number(file, input, "offset", 0)?;

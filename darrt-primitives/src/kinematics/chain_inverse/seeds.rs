@@ -1,7 +1,9 @@
 //! The table of configurations that attempts start from.
 //!
 //! Its configurations are the terms of an additive recurrence, so they need not be kept, and each window of consecutive ones
-//! covers the joint space evenly.
+//! covers the joint space evenly. Poses are kept in single precision: they only say where to start.
+
+#![allow(clippy::cast_possible_truncation, reason = "poses of starts in single precision are precise enough")]
 
 use std::f64::consts::PI;
 

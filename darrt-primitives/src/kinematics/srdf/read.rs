@@ -110,8 +110,9 @@ impl<'a> Reader<'a> {
             "end_effector" => self.end_effector(node),
             "virtual_joint" => self.virtual_joint(node),
             "passive_joint" => {
-                let joint = self.find("joint", node, "name")?;
-                self.out.passive_joints.push(joint);
+                if let Some((AnyJoint::Robot(joint), _)) = self.known_joint(node)? {
+                    self.out.passive_joints.push(joint);
+                }
                 Ok(())
             }
             "disable_collisions" => {
@@ -217,11 +218,17 @@ impl<'a> Reader<'a> {
                 self.unknown(child, &["joint"]);
                 continue;
             }
-            let (name, (joint, count)) = (self.attribute(child, "name")?, self.joint(child)?);
+            let name = self.attribute(child, "name")?;
             if !seen.insert(name) {
                 return Err(self.duplicate(child, name));
             }
-            joints.push((joint, self.values(child, count)?));
+            match self.known_joint(child)? {
+                Some((AnyJoint::Robot(_), 0)) => {
+                    self.remark(child, format!("the joint {name:?} is fixed: its value says nothing"));
+                }
+                Some((joint, count)) => joints.push((joint, self.values(child, count)?)),
+                None => {}
+            }
         }
         self.out.states.push(GroupState { name: name.to_owned(), group, joints });
         Ok(())
@@ -233,7 +240,12 @@ impl<'a> Reader<'a> {
         let values: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
         match values {
             Some(values) if values.len() == count && values.iter().all(|value| value.is_finite()) => Ok(values),
-            _ => Err(self.value(node, "value", text, format!("{count} finite number{}", if count == 1 { "" } else { "s" }))),
+            _ => Err(self.value(
+                node,
+                "value",
+                text,
+                format!("{count} finite number{}", if count == 1 { "" } else { "s" }),
+            )),
         }
     }
 
@@ -283,6 +295,18 @@ impl<'a> Reader<'a> {
             *link = *index;
         }
         Ok(Some((links[0], links[1])))
+    }
+
+    /// As [`joint`](Self::joint); `None`, with a remark, when it is not there: files name the joint to the world, or those of
+    /// other variants of the robot.
+    fn known_joint(&mut self, node: Node<'a, 'a>) -> Result<Option<(AnyJoint, usize)>, SrdfError> {
+        let name = self.attribute(node, "name")?;
+        if self.virtual_joints.contains_key(name) || self.joints.contains_key(name) {
+            return self.joint(node).map(Some);
+        }
+        let element = node.tag_name().name();
+        self.remark(node, format!("<{element}> names the joint {name:?}, which the robot does not have"));
+        Ok(None)
     }
 
     /// The joint that is named, and how many numbers say where it stands.
@@ -355,7 +379,8 @@ impl<'a> Reader<'a> {
 
     fn unknown(&mut self, node: Node<'a, 'a>, known: &[&str]) {
         let name = node.tag_name().name();
-        let hint = nearest(name, known.iter().copied()).map_or_else(String::new, |word| format!("; did you mean <{word}>?"));
+        let hint =
+            nearest(name, known.iter().copied()).map_or_else(String::new, |word| format!("; did you mean <{word}>?"));
         self.remark(node, format!("<{name}> is not read{hint}"));
     }
 

@@ -20,7 +20,7 @@ const WHOLE: &str = "<virtual_joint name='world' type='planar' parent_frame='odo
 <group name='hand'><link name='probe'/></group>
 <group_state name='up' group='arm'><joint name='bend' value='0.5'/><joint name='world' value='1 2 3'/></group_state>
 <end_effector name='tool' parent_link='hand' group='hand' parent_group='arm'/>
-<passive_joint name='tilt'/>
+<passive_joint name='tilt'/><passive_joint name='world_joint'/>
 <disable_collisions link1='mount' link2='rail' reason='Adjacent'/>
 <disable_collisions link1='mount' link2='camera' reason='Never'/>
 <disable_default_collisions link='probe'/><enable_collisions link1='probe' link2='rail'/>
@@ -51,6 +51,7 @@ fn everything_is_read_and_resolved() {
     assert_eq!(
         remarks,
         [
+            "8: <passive_joint> names the joint \"world_joint\", which the robot does not have",
             "10: <disable_collisions> names the link \"camera\", which the robot does not have",
             "12: <disable_collision> is not read; did you mean <disable_collisions>?",
             "13: <rotor_params> is not read",
