@@ -53,7 +53,7 @@ pub fn panda() -> String {
     urdf("panda", &joints, [0.0, 0.0, 0.2104], [0.0, 0.0, -FRAC_PI_4])
 }
 
-/// Universal Robots UR5e: six joints, from its Denavit-Hartenberg table.
+/// The six-joint arm `UR5e` of Universal Robots, from its Denavit-Hartenberg table.
 pub fn ur5e() -> String {
     let places = [
         ([0.0, 0.0, 0.0], 0.0),

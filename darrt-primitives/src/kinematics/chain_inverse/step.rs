@@ -75,10 +75,7 @@ fn damped(columns: &[Column], free: &[bool], damping: f64, error: &Column) -> Op
     for i in 0..6 {
         a[i][i] += damping;
         for j in 0..=i {
-            let mut rest = a[i][j];
-            for k in 0..j {
-                rest -= a[i][k] * a[j][k];
-            }
+            let rest = (0..j).fold(a[i][j], |rest, k| rest - a[i][k] * a[j][k]);
             if i > j {
                 a[i][j] = rest * a[j][j];
             } else if rest > 0.0 {

@@ -75,7 +75,7 @@ impl<'a> Reader<'a> {
 
     /// The names that elements further up may use: virtual joints and groups.
     fn names(&mut self, root: Node<'a, 'a>) -> Result<(), SrdfError> {
-        self.out.robot = root.attribute("name").unwrap_or_default().to_owned();
+        root.attribute("name").unwrap_or_default().clone_into(&mut self.out.robot);
         if self.out.robot != self.robot.name {
             let text = format!("the robot is called {:?} here and {:?} in its URDF", self.out.robot, self.robot.name);
             self.remark(root, text);
