@@ -32,19 +32,18 @@ impl From<ModelError> for RobotError {
 }
 
 /// The names of the postures, in the order of [`ArmPosture::ALL`].
-const POSTURES: [&str; ArmPosture::ALL.len()] = {
-    let mut names = [""; ArmPosture::ALL.len()];
-    let mut i = 0;
-    while i < names.len() {
-        names[i] = ArmPosture::ALL[i].name();
-        i += 1;
-    }
-    names
-};
+fn posture_names() -> Vec<String> {
+    ArmPosture::ALL.map(|posture| posture.name().to_owned()).to_vec()
+}
 
 impl TaskRobot for Pr2 {
-    const MODEL: &'static str = "pr2";
-    const POSTURES: &'static [&'static str] = &POSTURES;
+    fn models() -> Vec<String> {
+        vec!["pr2".to_owned()]
+    }
+
+    fn posture_names(_: &RobotSettings) -> Result<Vec<String>, RobotError> {
+        Ok(posture_names())
+    }
 
     fn build(settings: &RobotSettings) -> Result<(Self, ArmConfiguration), RobotError> {
         let model = match &settings.urdf {
@@ -96,6 +95,7 @@ impl TaskRobot for Pr2 {
             start,
             at_rest: Side::BOTH.map(finger).into_iter().zip(open).collect(),
             self_pairs: pairs.collect(),
+            is_bolted: false,
             pad_length_m: gripper::PAD_LENGTH,
             grip_force_n: Gripper.grip_force_n(),
             payload_kg: PAYLOAD_KG,
@@ -157,6 +157,6 @@ fn arm_start(
         return joints.try_into().map_err(|_| RobotError::JointCount { key: joints_key, found, expected });
     }
     let Some(name) = posture else { return Ok(HOME.values(side)) };
-    let posture = ArmPosture::from_name(name).ok_or_else(|| RobotError::unknown_posture::<Pr2>(posture_key, name))?;
+    let posture = ArmPosture::from_name(name).ok_or_else(|| RobotError::unknown_posture(posture_key, name, posture_names()))?;
     Ok(posture.values(side))
 }

@@ -172,7 +172,7 @@ impl<J: JointVector> RobotGoal<J> {
             (None, Some(_)) => ARM,
             (None, None) => return Some(target),
         };
-        let config = Configuration { base: self.base.unwrap_or_default(), arm: self.arm.unwrap_or_else(J::zeros) };
+        let config = Configuration { base: self.base.unwrap_or_default(), arm: self.arm.unwrap_or(*m.robot().zeros()) };
         Some(target.with_robot_groups(config, groups))
     }
 }

@@ -95,6 +95,9 @@ moves: with less of it the base alone may go farther.";
 pub struct PlanOptions {
     /// Name of a built-in problem, or a problem file
     pub problem: String,
+    /// Plan for this robot instead of the problem's: a robot file, or a name of `darrt robot list`
+    #[arg(long, value_name = "FILE|NAME")]
+    pub robot: Option<String>,
     /// Seed of every random choice
     #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
     pub seed: u64,

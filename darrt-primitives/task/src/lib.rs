@@ -2,7 +2,7 @@
 //!
 //! | question | file |
 //! |---|---|
-//! | what must a robot say of itself? | [`robot`] |
+//! | what must a robot say of itself? | [`robot`]; one that comes as a file: [`robot_file`], [`file_robot`] |
 //! | which primitives, samplers, distances and problems are there? | [`registry`], and for command lines [`program`] |
 //! | what is a problem? | [`problem_file`], [`grasp_families`], [`goal_edges`] |
 //! | is it hopeless? | [`goal_means`], [`goal_check`], `doubts` |
@@ -17,6 +17,7 @@
 mod doubts;
 pub mod export;
 pub mod file_kind;
+pub mod file_robot;
 pub mod goal_check;
 pub mod goal_edges;
 pub mod goal_means;
@@ -31,6 +32,7 @@ pub mod profile;
 pub mod program;
 pub mod registry;
 pub mod robot;
+pub mod robot_file;
 pub mod schema;
 mod supports;
 #[cfg(test)]

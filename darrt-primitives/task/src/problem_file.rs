@@ -26,7 +26,7 @@ pub mod safety;
 pub mod settings;
 pub mod shape;
 pub mod suggest;
-mod toml_path;
+pub(crate) mod toml_path;
 pub mod upper_face;
 pub mod validate;
 pub mod world;

@@ -54,8 +54,13 @@ fn outside(settings: &Robot) -> darrt_task::problem_file::Robot {
 }
 
 impl TaskRobot for Pr2 {
-    const MODEL: &'static str = <Self as Outside>::MODEL;
-    const POSTURES: &'static [&'static str] = <Self as Outside>::POSTURES;
+    fn models() -> Vec<String> {
+        <Self as Outside>::models()
+    }
+
+    fn posture_names(settings: &Robot) -> Result<Vec<String>, RobotError> {
+        <Self as Outside>::posture_names(&outside(settings)).map_err(RobotError::model)
+    }
 
     fn build(settings: &Robot) -> Result<(Self, Joints), RobotError> {
         <Self as Outside>::build(&outside(settings)).map_err(RobotError::model)
@@ -76,6 +81,7 @@ impl TaskRobot for Pr2 {
             start: facts.start,
             at_rest: facts.at_rest,
             self_pairs: facts.self_pairs,
+            is_bolted: facts.is_bolted,
             pad_length_m: facts.pad_length_m,
             grip_force_n: facts.grip_force_n,
             payload_kg: facts.payload_kg,

@@ -16,7 +16,7 @@ use darrt_task::plan_file::PlanFile;
 use darrt_task::planning::{PlanRequest, PlanResult};
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
-use darrt_task::robot::RobotFacts;
+use darrt_task::robot::{RobotError, RobotFacts};
 use darrt_task::text::counted;
 
 /// Plans and reports.
@@ -24,7 +24,7 @@ use darrt_task::text::counted;
 /// # Errors
 /// Every end but a verified plan that is written, with its exit code.
 pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
-    let problem = options.safety.applied(program.open(&options.problem)?, &options.problem)?;
+    let problem = options.safety.applied(opened(program, options, output)?, &options.problem)?;
     let files = Files::choose(options)?;
     let request = request(options, problem);
     let cancel = Cancel::new();
@@ -61,6 +61,19 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
         output.print(&files.words())?;
     }
     Ok(Exit::Solved)
+}
+
+/// The problem, with the robot that is asked for.
+fn opened(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<ProblemFile, Failure> {
+    let Some(robot) = &options.robot else { return Ok(program.open(&options.problem)?) };
+    let problem = program.problems().open(&options.problem)?;
+    let failed = |error: RobotError| Failure::input(located(&options.problem, &error.to_string()));
+    let (problem, changes) = program.with_robot(problem, robot).map_err(failed)?;
+    program.check(&problem, &options.problem)?;
+    if !options.quiet {
+        changes.iter().try_for_each(|change| output.print(&format!("{}: {change}", problem.name)))?;
+    }
+    Ok(problem)
 }
 
 fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
