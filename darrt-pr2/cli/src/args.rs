@@ -54,7 +54,9 @@ pub enum Command {
     Problems(ProblemsOptions),
     /// Draw a problem or a plan
     Show(ShowOptions),
-    /// Print the JSON Schema of problem files or plan files
+    /// Robots that come as files: list those inside, check one, or begin one for a description
+    Robot(RobotOptions),
+    /// Print the JSON Schema of problem files, plan files or robot files
     Schema(SchemaOptions),
     /// Make problems like a given one: places, sizes and heights drawn at random
     Generate(GenerateOptions),
@@ -197,6 +199,64 @@ pub struct ShowOptions {
     pub overview: bool,
 }
 
+/// Options of `darrt robot`.
+#[derive(Debug, Args)]
+pub struct RobotOptions {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: RobotCommand,
+}
+
+/// What `darrt robot` does.
+#[derive(Debug, Subcommand)]
+pub enum RobotCommand {
+    /// List the robots inside, or print one's robot file or description to copy and edit
+    List(RobotListOptions),
+    /// Read a robot file as planning would, try the robot, draw it, and say what is odd
+    Check(RobotCheckOptions),
+    /// Write a first robot file for a description (URDF), with guesses to look at
+    New(RobotNewOptions),
+}
+
+/// Options of `darrt robot list`.
+#[derive(Debug, Args)]
+pub struct RobotListOptions {
+    /// Print the robot file of this robot
+    #[arg(long, value_name = "NAME")]
+    pub print: Option<String>,
+    /// Print the description of this robot
+    #[arg(long, value_name = "NAME", conflicts_with = "print")]
+    pub print_urdf: Option<String>,
+}
+
+/// Options of `darrt robot check`.
+#[derive(Debug, Args)]
+pub struct RobotCheckOptions {
+    /// A robot file, or a name of `darrt robot list`
+    #[arg(value_name = "FILE|NAME")]
+    pub robot: String,
+    /// Write a first problem for it here
+    #[arg(long, value_name = "FILE")]
+    pub problem: Option<PathBuf>,
+    /// Draw it here: .html (3-D), .svg, .png or .glb [default: NAME.robot.html in the current folder]
+    #[arg(long, value_name = "FILE", conflicts_with = "no_picture")]
+    pub picture: Option<PathBuf>,
+    /// Draw no picture
+    #[arg(long)]
+    pub no_picture: bool,
+}
+
+/// Options of `darrt robot new`.
+#[derive(Debug, Args)]
+pub struct RobotNewOptions {
+    /// The description
+    #[arg(value_name = "URDF")]
+    pub urdf: PathBuf,
+    /// Write the robot file here [default: beside the description, .toml]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
 /// Options of `darrt schema`.
 #[derive(Debug, Args)]
 pub struct SchemaOptions {
@@ -296,6 +356,8 @@ pub enum SchemaKind {
     Problem,
     /// Plan files (JSON)
     Plan,
+    /// Robot files (TOML)
+    Robot,
 }
 
 /// A whole number from `least` to `most`, in a message that says so whatever is wrong.

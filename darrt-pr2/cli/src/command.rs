@@ -6,5 +6,6 @@ pub(crate) mod check;
 pub(crate) mod generate;
 pub(crate) mod plan;
 pub(crate) mod problems;
+pub(crate) mod robot;
 pub(crate) mod schema;
 pub(crate) mod show;

@@ -6,6 +6,8 @@
 mod bases;
 mod chain;
 pub mod choose;
+pub mod guess;
+pub mod inspect;
 mod inverse;
 mod load;
 mod opening;
@@ -13,6 +15,7 @@ mod pairs;
 pub mod shipped;
 mod task;
 mod travel;
+pub mod trial;
 
 use std::collections::BTreeMap;
 

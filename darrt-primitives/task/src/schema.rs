@@ -25,6 +25,7 @@ mod tests {
     use super::*;
     use crate::plan_file::PlanFile;
     use crate::problem_file::ProblemFile;
+    use crate::robot_file::RobotFile;
 
     /// Set to rewrite the published schemas instead of comparing with them.
     const UPDATE: &str = "DARRT_UPDATE_SCHEMAS";
@@ -43,6 +44,7 @@ mod tests {
     fn the_published_schemas_are_up_to_date() {
         check_published::<ProblemFile>("problem");
         check_published::<PlanFile>("plan");
+        check_published::<RobotFile>("robot");
     }
 
     fn check_closed(value: &Value, path: &str) {
@@ -62,5 +64,6 @@ mod tests {
     fn unknown_keys_are_forbidden_everywhere() {
         check_closed(&schema::<ProblemFile>(), "problem");
         check_closed(&schema::<PlanFile>(), "plan");
+        check_closed(&schema::<RobotFile>(), "robot");
     }
 }

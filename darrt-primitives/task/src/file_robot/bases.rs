@@ -56,6 +56,11 @@ impl Ring {
         Self { shoulder, wrist, length_m: bones + slides, fixed }
     }
 
+    /// Is the base bolted down?
+    pub(super) fn is_fixed(&self) -> bool {
+        self.fixed.is_some()
+    }
+
     /// The shoulder in a ring around the wrist, uniform over its area, the robot roughly facing the wrist.
     pub(super) fn base_for(&self, world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] {
         if let Some(base) = self.fixed {

@@ -14,7 +14,7 @@ use super::bases::Ring;
 use super::chain::{Driver, Layout, Place};
 use super::inverse::Inverse;
 use super::opening::{Law, Opening};
-use super::travel::{Levers, balls};
+use super::travel::{Levers, corners};
 use super::{FileRobot, ParallelHand, Speeds, pairs, shipped};
 use crate::problem_file::Limits;
 use crate::problem_file::Robot as RobotSettings;
@@ -115,10 +115,10 @@ impl Loaded {
         }
         let hand = self.hand(&layout, &bodies, tool, finger)?;
         let finger_limit = tree.variables().get(finger).map_or(JointLimit::UNLIMITED, |v| v.limit);
-        let levers_at = |place: &Place, balls: &[(Point3<f64>, f64)]| Levers::new(&chain, &limits, place, finger_limit, balls);
-        let levers: Vec<_> = places.iter().zip(&links).map(|(place, link)| levers_at(place, &balls(&link.body))).collect();
+        let levers_at = |place: &Place, corners: &[Point3<f64>]| Levers::new(&chain, &limits, place, finger_limit, corners);
+        let levers: Vec<_> = places.iter().zip(&links).map(|(place, link)| levers_at(place, &corners(&link.body))).collect();
         let at_tool = Place { anchor: chain.joints.len(), steps: Vec::new(), offset: chain.wrist_from_tool };
-        let tool_levers = levers_at(&at_tool, &[(Point3::origin(), 0.0)]);
+        let tool_levers = levers_at(&at_tool, &[Point3::origin()]);
         let weights_m = tool_levers.arm.iter().map(|lever| (BENT * lever).max(LEAST_WEIGHT_M)).collect();
         let self_pairs = pairs::pairs(&self.source, &tree, &numbers, &places, &links)?;
         let drives = self.source.file.base.kind == crate::robot_file::BaseKind::Planar;

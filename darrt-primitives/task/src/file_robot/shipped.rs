@@ -24,7 +24,7 @@ macro_rules! shipped {
     };
 }
 
-const ALL: [Shipped; 1] = [shipped!("mobile-arm")];
+const ALL: [Shipped; 3] = [shipped!("mobile-arm"), shipped!("panda-arm"), shipped!("table-arm")];
 
 /// All of them.
 pub fn all() -> &'static [Shipped] {

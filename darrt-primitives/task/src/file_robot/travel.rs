@@ -15,27 +15,31 @@ pub(super) struct Levers {
     pub(super) base: f64,
 }
 
-/// Balls that contain a body, in the frame of its link: centre and radius, metres.
-pub(super) fn balls(body: &Body) -> Vec<(Point3<f64>, f64)> {
-    let parts = body.parts.iter().map(|part| {
-        let (centre, radius) = part.shape.bounding_sphere();
-        (part.body_from_shape * centre, radius)
+/// Points whose convex hull contains a body, in the frame of its link: corners of the boxes around its parts.
+pub(super) fn corners(body: &Body) -> Vec<Point3<f64>> {
+    let parts = body.parts.iter().flat_map(|part| {
+        let (low, high) = part.shape.local_aabb();
+        let corner = move |bits: usize| {
+            let side = |axis: usize| if bits & (1 << axis) == 0 { low[axis] } else { high[axis] };
+            part.body_from_shape * Point3::new(side(0), side(1), side(2))
+        };
+        (0..8).map(corner)
     });
     parts.collect()
 }
 
 impl Levers {
-    /// Of the points within `balls` (link frame) of what is at `place`.
+    /// Of what is at `place` and within these corners (link frame).
     pub(super) fn new(
         chain: &ArmChain,
         limits: &[JointLimit],
         place: &Place,
         finger: JointLimit,
-        balls: &[(Point3<f64>, f64)],
+        corners: &[Point3<f64>],
     ) -> Self {
         let mut arm = vec![0.0_f64; chain.joints.len()];
         let reach = |at: &Isometry3<f64>| {
-            balls.iter().map(|(centre, radius)| (at * centre).coords.norm() + radius).fold(0.0, f64::max)
+            corners.iter().map(|corner| (at * corner).coords.norm()).fold(0.0, f64::max)
         };
         // From the link inwards: how far its points are from the origin of the next frame.
         let mut norm = reach(&place.offset);
@@ -57,9 +61,9 @@ impl Levers {
         let mut about = place.steps.is_empty().then(|| {
             let axis = chain.joints.get(place.anchor.wrapping_sub(1)).map(|joint| joint.axis);
             axis.map_or(f64::INFINITY, |axis| {
-                let from_axis = balls.iter().map(|(centre, radius)| {
-                    let at = (place.offset * centre).coords;
-                    (at - axis.into_inner() * at.dot(&axis)).norm() + radius
+                let from_axis = corners.iter().map(|corner| {
+                    let at = (place.offset * corner).coords;
+                    (at - axis.into_inner() * at.dot(&axis)).norm()
                 });
                 from_axis.fold(0.0, f64::max)
             })
@@ -80,7 +84,7 @@ impl Levers {
             });
         }
         let base = if place.anchor == 0 && place.steps.is_empty() {
-            let from_axis = balls.iter().map(|(centre, radius)| (place.offset * centre).coords.xy().norm() + radius);
+            let from_axis = corners.iter().map(|corner| (place.offset * corner).coords.xy().norm());
             from_axis.fold(0.0, f64::max)
         } else {
             norm

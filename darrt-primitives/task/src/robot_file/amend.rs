@@ -14,6 +14,8 @@ use super::error::Fault;
 use super::{BaseKind, RobotFile, pads};
 use std::path::PathBuf;
 
+/// A pose has six degrees of freedom.
+const LEAST_JOINTS: usize = 6;
 /// The joint of a rail.
 const RAIL: &str = "rail";
 
@@ -66,6 +68,13 @@ pub fn amend(
     }
     if arm_joints.len() > MAX_JOINTS {
         let why = format!("is moved by {} joints below `arm.from`, at most {MAX_JOINTS} are planned with", arm_joints.len());
+        return Err(Fault::new("arm.to", why));
+    }
+    if arm_joints.len() < LEAST_JOINTS {
+        let why = format!(
+            "is moved by {} joints: the primitives bring the hand down from above, at any heading and lean, and lift it straight up; an              arm that can take the hand to such poses has at least {LEAST_JOINTS} joints, a rail among them",
+            arm_joints.len()
+        );
         return Err(Fault::new("arm.to", why));
     }
     let wrist_link = description.links[wrist_link].name.to_string();

@@ -74,6 +74,11 @@ impl Source {
         located(&self.text, &self.name, fault)
     }
 
+    /// The line of a key, from 1.
+    pub fn line(&self, key: &str) -> usize {
+        line(&self.text, key)
+    }
+
     /// The path of the description from the working folder.
     pub fn urdf(&self) -> PathBuf {
         self.folder.as_ref().map_or_else(|| self.file.urdf.clone(), |folder| folder.join(&self.file.urdf))
@@ -123,8 +128,12 @@ impl Source {
     }
 }
 
+fn line(text: &str, key: &str) -> usize {
+    line_of(text, key).map_or(1, |offset| text_file::line_and_column(text, offset).0)
+}
+
 fn located(text: &str, name: &str, fault: Fault) -> RobotFileError {
-    let line = line_of(text, &fault.key).map_or(1, |offset| text_file::line_and_column(text, offset).0);
+    let line = line(text, &fault.key);
     RobotFileError::Invalid { file: name.to_owned(), line, key: shown(&fault.key), why: fault.why }
 }
 
