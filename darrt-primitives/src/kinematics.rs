@@ -9,24 +9,24 @@
 //! | where are they in many configurations at once? | [`batch`], in the arithmetic of [`lanes`] |
 //! | what do the links occupy? | [`collision`] |
 //! | how does a link move when one joint moves? | [`jacobian`] |
-//! | which joint values bring a link to a pose? | [`numeric_inverse`] |
+//! | which joint values bring a link to a pose? | [`chain_inverse`] |
 //!
-//! Nothing here names a robot. A robot with a closed-form inverse brings its own; [`numeric_inverse`] is for the rest.
+//! Nothing here names a robot. A robot with a closed-form inverse brings its own; [`chain_inverse`] is for the rest.
 
 pub mod batch;
+pub mod chain_inverse;
 pub mod collision;
 pub mod guard;
 pub mod jacobian;
 pub mod lanes;
 pub mod limit;
-pub mod numeric_inverse;
 pub mod tree;
 pub mod urdf;
 
 pub use batch::{BatchForward, BatchPoses, PoseLanes};
+pub use chain_inverse::{ChainInverse, InverseOptions, JointValues, MOST_JOINTS};
 pub use collision::{folders_above, link_bodies, mesh_folders, no_meshes};
 pub use jacobian::Chain;
 pub use limit::JointLimit;
-pub use numeric_inverse::{InverseOptions, NumericInverse};
 pub use tree::{KinematicTree, KinematicsError};
 pub use urdf::{RobotDescription, UrdfError};
