@@ -137,9 +137,7 @@ impl Manipulator for FileRobot {
     }
 
     fn inverse_near(&self, base: &[f64; 3], world_from_tool: &Isometry3<f64>, near: &Joints) -> Option<Joints> {
-        let found = self.inverse.near(&(chain::world_from_base(base).inverse() * world_from_tool), near)?;
-        let mut joints = near.as_ref().iter().zip(found.as_ref()).zip(&self.limits);
-        joints.all(|((from, to), limit)| difference(*from, *to, limit).abs() <= LINE_JOINT_STEP).then_some(found)
+        self.inverse.near(&(chain::world_from_base(base).inverse() * world_from_tool), near, LINE_JOINT_STEP)
     }
 
     fn base_for(&self, world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] {

@@ -41,6 +41,8 @@ pub struct Inspection {
     pub understood: Vec<String>,
     /// What is odd, a line each, with file and line.
     pub odd: Vec<String>,
+    /// The names of its postures.
+    pub postures: Vec<String>,
     /// Its base drives.
     pub drives: bool,
     /// At which heights a hand that points down reaches, lowest and highest, and how far ahead, metres.
@@ -81,7 +83,7 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
             loaded.source.line("tool")
         ));
     }
-    Ok(Inspection { name: loaded.source.file.name.clone(), understood: understood(&loaded, &robot, reach_down), odd, drives: !robot.ring.is_fixed(), reach_down })
+    Ok(Inspection { name: loaded.source.file.name.clone(), understood: understood(&loaded, &robot, reach_down), odd, postures: robot.postures.keys().cloned().collect(), drives: !robot.ring.is_fixed(), reach_down })
 }
 
 fn understood(loaded: &Loaded, robot: &FileRobot, reach_down: Option<([f64; 2], f64)>) -> Vec<String> {

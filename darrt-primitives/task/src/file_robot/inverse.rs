@@ -1,43 +1,58 @@
 //! Configurations of the arm for a pose of the tool.
 
-use std::f64::consts::PI;
-use std::sync::Arc;
-
 use darrt_primitives::joints::Joints;
-use darrt_primitives::kinematics::{Chain, InverseOptions, JointLimit, KinematicTree, NumericInverse};
+use darrt_primitives::kinematics::{ChainInverse, InverseOptions, JointLimit, KinematicTree, KinematicsError};
 use darrt_primitives::manipulator::JointVector as _;
 use nalgebra::Isometry3;
-use rand::{Rng, RngExt, SeedableRng as _};
+use rand::Rng;
 
 use super::chain::{Driver, Layout};
+use crate::problem_file::Limits;
 use crate::robot_file::Amended;
 
-/// The numeric inverse of an arm, from the frame of its base to its tool.
+/// The inverse of an arm, from the frame of its base to its tool.
 #[derive(Debug, Clone)]
 pub(super) struct Inverse {
-    tree: Arc<KinematicTree>,
-    chain: Chain,
-    /// Variables of the arm, in the order of its joints.
+    solver: ChainInverse,
+    /// From what the arm is mounted on.
+    mount_from_base: Isometry3<f64>,
+    /// Variables of the arm in the tree, in the order of its joints.
     variables: Vec<usize>,
     /// Values of all variables; those of the arm are replaced.
     rest: Vec<f64>,
     /// The variable that opens the hand.
     finger: Option<usize>,
-    limits: Vec<JointLimit>,
 }
 
-/// How near the tool must come, metres and radians.
-const TOLERANCE: f64 = 1e-10;
-
 impl Inverse {
-    pub(super) fn new(tree: KinematicTree, amended: &Amended, layout: &Layout<'_>, limits: &[JointLimit]) -> Option<Self> {
-        let mount = tree.parent(*layout.arm_links.first()?)?;
-        let chain = Chain::new(&tree, tree.link_names().get(mount)?, &amended.tool_link).ok()?;
-        let variables = amended.arm_joints.iter().map(|name| tree.variable_index(name)).collect::<Option<_>>()?;
+    /// # Errors
+    /// As [`ChainInverse::new`].
+    pub(super) fn new(
+        tree: &KinematicTree,
+        amended: &Amended,
+        layout: &Layout<'_>,
+        kind: Limits,
+    ) -> Result<Self, KinematicsError> {
+        let lost = || KinematicsError::UnknownLink { name: amended.tool_link.clone() };
+        let first = layout.arm_links.first().ok_or_else(lost)?;
+        let mount = tree.parent(*first).ok_or_else(lost)?;
+        let base_from_mount = layout.place(mount).ok_or_else(lost)?.in_anchor(&[], 0.0);
+        let name = tree.link_names().get(mount).ok_or_else(lost)?;
+        let options = InverseOptions { soft_limits: kind == Limits::Soft, ..InverseOptions::default() };
+        let solver = ChainInverse::new(tree, name, &amended.tool_link, &Isometry3::identity(), options)?;
         let value = |driver: &Driver| if let Driver::Rests(value) = driver { *value } else { 0.0 };
-        let rest = layout.drivers.iter().map(value).collect();
-        let finger = layout.drivers.iter().position(|driver| *driver == Driver::Finger);
-        Some(Self { tree: Arc::new(tree), chain, variables, rest, finger, limits: limits.to_vec() })
+        Ok(Self {
+            variables: solver.variables().to_vec(),
+            solver,
+            mount_from_base: base_from_mount.inverse(),
+            rest: layout.drivers.iter().map(value).collect(),
+            finger: layout.drivers.iter().position(|driver| *driver == Driver::Finger),
+        })
+    }
+
+    /// The limits that it keeps to.
+    pub(super) fn limits(&self) -> &[JointLimit] {
+        self.solver.limits()
     }
 
     /// The values of all variables of the tree.
@@ -54,45 +69,11 @@ impl Inverse {
 
     /// Some configuration of the arm.
     pub(super) fn any(&self, base_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> Option<Joints> {
-        let mut start = Joints::zeros(self.limits.len())?;
-        for (slot, limit) in start.as_mut().iter_mut().zip(&self.limits) {
-            let [low, high] =
-                if limit.is_unlimited() { [-PI, PI] } else { [limit.lower, limit.upper] };
-            *slot = rng.random_range(low..=high);
-        }
-        self.solve(base_from_tool, &start, 8, rng)
+        Joints::from_values(&self.solver.inverse(&(self.mount_from_base * base_from_tool), rng)?)
     }
 
-    /// The configuration that a descent from `near` finds.
-    pub(super) fn near(&self, base_from_tool: &Isometry3<f64>, near: &Joints) -> Option<Joints> {
-        self.solve(base_from_tool, near, 0, &mut rand_xoshiro::SplitMix64::seed_from_u64(0))
-    }
-
-    fn solve(
-        &self,
-        base_from_tool: &Isometry3<f64>,
-        start: &Joints,
-        restarts: usize,
-        rng: &mut dyn Rng,
-    ) -> Option<Joints> {
-        let options = InverseOptions {
-            position_tolerance: TOLERANCE,
-            rotation_tolerance: TOLERANCE,
-            max_iterations: 40,
-            restarts,
-            soft_limits: false,
-            ..InverseOptions::default()
-        };
-        let mut seed = self.rest.clone();
-        for (variable, value) in self.variables.iter().zip(start.as_ref()) {
-            *seed.get_mut(*variable)? = *value;
-        }
-        let inverse = NumericInverse::new(&self.tree, self.chain.clone(), options);
-        let found = inverse.solve(base_from_tool, &seed, rng).ok()??;
-        let mut joints = *start;
-        for (slot, variable) in joints.as_mut().iter_mut().zip(&self.variables) {
-            *slot = *found.get(*variable)?;
-        }
-        joints.as_ref().iter().zip(&self.limits).all(|(q, limit)| limit.contains(*q)).then_some(joints)
+    /// The configuration near this one, no joint of it farther away than `step`.
+    pub(super) fn near(&self, base_from_tool: &Isometry3<f64>, near: &Joints, step: f64) -> Option<Joints> {
+        Joints::from_values(&self.solver.inverse_near(&(self.mount_from_base * base_from_tool), near.as_ref(), step)?)
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use darrt_geom::{Body, Shape};
 use darrt_primitives::joints::Joints;
 use darrt_primitives::kinematics::{
-    JointLimit, KinematicTree, RobotDescription, folders_above, link_bodies, mesh_folders,
+    JointLimit, KinematicTree, KinematicsError, RobotDescription, folders_above, link_bodies, mesh_folders,
 };
 use darrt_primitives::manipulator::{JointVector as _, LinkGroup, RobotLink};
 use nalgebra::{Isometry3, Point3};
@@ -102,7 +102,9 @@ impl Loaded {
         let (layout, finger) = self.layout(&tree).ok_or_else(no_layout)?;
         let tool = tree.link_index(&self.amended.tool_link).ok_or_else(no_layout)?;
         let chain = layout.chain(tool).ok_or_else(no_layout)?;
-        let limits = self.limits(&tree, kind);
+        let unsolvable = |error: KinematicsError| at("arm.to", &format!("cannot be used: {error}"));
+        let inverse = Inverse::new(&tree, &self.amended, &layout, kind).map_err(unsolvable)?;
+        let limits = inverse.limits().to_vec();
         let mut links = Vec::new();
         let mut places = Vec::new();
         let mut numbers = Vec::new();
@@ -123,7 +125,6 @@ impl Loaded {
         let self_pairs = pairs::pairs(&self.source, &tree, &numbers, &places, &links)?;
         let drives = self.source.file.base.kind == crate::robot_file::BaseKind::Planar;
         let ring = Ring::new(&chain, &limits, (!drives).then_some(base));
-        let inverse = Inverse::new(tree.clone(), &self.amended, &layout, &limits).ok_or_else(no_layout)?;
         let speeds = self.speeds(&tree, &layout)?;
         let postures = self.postures(&limits)?;
         let file = &self.source.file;
@@ -146,17 +147,6 @@ impl Loaded {
             postures,
             home: file.home.clone(),
         })
-    }
-
-    fn limits(&self, tree: &KinematicTree, kind: Limits) -> Vec<JointLimit> {
-        let limit = |name: &String| {
-            let variable = tree.variable_index(name).and_then(|index| tree.variables().get(index));
-            variable.map_or(JointLimit::UNLIMITED, |v| match kind {
-                Limits::Soft => v.soft_limit,
-                Limits::Hard => v.limit,
-            })
-        };
-        self.amended.arm_joints.iter().map(limit).collect()
     }
 
     /// The opening of the hand, from where the pads are.

@@ -15,7 +15,7 @@ pub fn problem(inspection: &Inspection, robot: &str, drives: bool) -> String {
     // Where there is room above it to lift, and the robot's arm is not stretched.
     let top = (f64::midpoint(low, high) - ABOVE_M).clamp((low - 0.05).max(0.1), 0.9);
     let top = (top * 100.0).round() / 100.0;
-    let name = &inspection.name;
+    let (name, postures) = (&inspection.name, &inspection.postures);
     let driving = if drives { "\n  \"Base-Transit\",\n  \"Base-Rigid-Transfer\"," } else { "" };
     let (left, right) = (ahead - 2.5, ahead + 2.5);
     let middle = ahead - NEAR_M + 0.25;
@@ -70,6 +70,9 @@ on = "table"
 at = [{ahead:.3}, 0.2]
 tolerance_m = 0.01
 state = "released"
+
+[transit]
+postures = {postures:?}
 
 [budget]
 time_limit_s = 60
