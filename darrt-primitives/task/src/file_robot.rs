@@ -12,6 +12,7 @@ mod inverse;
 mod load;
 mod opening;
 mod pairs;
+mod reach;
 pub mod shipped;
 mod task;
 mod travel;
@@ -141,7 +142,7 @@ impl Manipulator for FileRobot {
     }
 
     fn base_for(&self, world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] {
-        self.ring.base_for(world_from_tool, rng)
+        self.ring.base_for((&self.chain, &self.limits), world_from_tool, rng)
     }
 
     fn may_reach(&self, base: &[f64; 3], world_from_tool: &Isometry3<f64>) -> bool {

@@ -1,6 +1,7 @@
 //! Where the robot may stand to bring its hand to a pose.
 
 use std::f64::consts::PI;
+use std::sync::{Arc, OnceLock};
 
 use darrt_core::space::so2::wrap;
 use darrt_primitives::kinematics::JointLimit;
@@ -8,11 +9,14 @@ use nalgebra::{Isometry3, Point3};
 use rand::{Rng, RngExt};
 
 use super::chain::{ArmChain, world_from_base};
+use super::reach::Reach;
 
 /// Parts of the arm's length between shoulder and wrist when a base is drawn: least and most.
 const DRAWN_PART: [f64; 2] = [0.3, 0.85];
 /// The wrist is drawn no farther to either side of straight ahead, radians.
 const DRAWN_ASIDE: f64 = 1.3;
+/// Share of the draws from the ring: what was not seen is not out of reach.
+const RING_SHARE: f64 = 0.2;
 /// How far from the axis of a joint a point may be to be on it, metres.
 const ON_AXIS_M: f64 = 1e-9;
 
@@ -27,6 +31,8 @@ pub(super) struct Ring {
     length_m: f64,
     /// The base, if it is bolted down.
     fixed: Option<[f64; 3]>,
+    /// Shared, because it is large; made when it is first asked.
+    reach: Arc<OnceLock<Reach>>,
 }
 
 impl Ring {
@@ -53,7 +59,7 @@ impl Ring {
         let slides: f64 = slides.map(|(_, limit)| farthest(limit)).sum();
         let bones: f64 = chain.joints.iter().take(last).skip(1).map(|joint| joint.before.translation.vector.norm()).sum();
         let shoulder = chain.joints.first().map_or(Isometry3::identity(), |joint| joint.before) * Point3::origin();
-        Self { shoulder, wrist, length_m: bones + slides, fixed }
+        Self { shoulder, wrist, length_m: bones + slides, fixed, reach: Arc::default() }
     }
 
     /// Is the base bolted down?
@@ -61,9 +67,20 @@ impl Ring {
         self.fixed.is_some()
     }
 
-    /// The shoulder in a ring around the wrist, uniform over its area, the robot roughly facing the wrist.
-    pub(super) fn base_for(&self, world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] {
+    /// A base from which the arm was seen to get to such poses; for some draws, and for poses that were not seen, the shoulder in a
+    /// ring around the wrist, uniform over its area, the robot roughly facing the wrist.
+    pub(super) fn base_for(
+        &self,
+        (chain, limits): (&ArmChain, &[JointLimit]),
+        world_from_tool: &Isometry3<f64>,
+        rng: &mut dyn Rng,
+    ) -> [f64; 3] {
         if let Some(base) = self.fixed {
+            return base;
+        }
+        if !rng.random_bool(RING_SHARE)
+            && let Some(base) = self.reach.get_or_init(|| Reach::new(chain, limits)).base_for(world_from_tool, rng)
+        {
             return base;
         }
         let wrist = world_from_tool * self.wrist;

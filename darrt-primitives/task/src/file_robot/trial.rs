@@ -56,7 +56,7 @@ top_of = "table top"
 
 [[object]]
 name = "cup"
-shape = {{ cylinder = {{ radius = 0.025, height = 0.1 }} }}
+shape = {{ cylinder = {{ radius = 0.02, height = 0.1 }} }}
 mass_kg = 0.1
 friction = {{ table = 0.3, fingers = 0.5 }}
 symmetry = "z"
