@@ -157,6 +157,7 @@ fn arm_start(
         return joints.try_into().map_err(|_| RobotError::JointCount { key: joints_key, found, expected });
     }
     let Some(name) = posture else { return Ok(HOME.values(side)) };
-    let posture = ArmPosture::from_name(name).ok_or_else(|| RobotError::unknown_posture(posture_key, name, posture_names()))?;
+    let posture =
+        ArmPosture::from_name(name).ok_or_else(|| RobotError::unknown_posture(posture_key, name, posture_names()))?;
     Ok(posture.values(side))
 }

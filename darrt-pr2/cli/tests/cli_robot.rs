@@ -1,6 +1,11 @@
 //! Robots that come as files, from the command line: the guide as it is written, the robots inside, and what is wrong with a file.
 
-#![allow(clippy::unwrap_used, clippy::panic, clippy::indexing_slicing, reason = "a test says what is wrong by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    reason = "a test says what is wrong by panicking"
+)]
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -36,7 +41,8 @@ fn the_guide_can_be_followed() {
     for block in guide.split("```sh\n").skip(1).map(|rest| rest.split("```").next().unwrap()) {
         for line in block.lines() {
             let line = line.split('#').next().unwrap().trim();
-            let (command, file) = line.split_once(" > ").map_or((line, None), |(command, file)| (command, Some(file.trim())));
+            let (command, file) =
+                line.split_once(" > ").map_or((line, None), |(command, file)| (command, Some(file.trim())));
             let words: Vec<&str> = command.split_whitespace().collect();
             assert_eq!(words[0], "darrt");
             let said = done(folder.path(), &words[1..]);
@@ -70,7 +76,8 @@ fn a_robot_that_is_bolted_down_plans_what_it_reaches_and_says_why_not() {
     done(folder.path(), &["robot", "check", "table-arm", "--no-picture", "--problem", "first.toml"]);
     done(folder.path(), &["plan", "first.toml", "--no-picture"]);
     done(folder.path(), &["check", "first.plan.json"]);
-    let output = darrt(folder.path(), &["plan", "plate3", "--robot", "table-arm", "--iterations", "50", "--no-picture"]);
+    let output =
+        darrt(folder.path(), &["plan", "plate3", "--robot", "table-arm", "--iterations", "50", "--no-picture"]);
     assert_eq!(output.status.code(), Some(1), "{}", text(&output));
     let said = text(&output);
     assert!(said.contains("without Base-Transit and Base-Rigid-Transfer"), "{said}");
@@ -91,7 +98,8 @@ fn a_robot_that_is_bolted_down_plans_what_it_reaches_and_says_why_not() {
 fn changed(folder: &Path, from: &str, to: &str) -> usize {
     let robot = done(folder, &["robot", "list", "--print", "mobile-arm"]);
     assert_eq!(robot.matches(from).count(), 1, "{from}");
-    std::fs::write(folder.join("mobile-arm.urdf"), done(folder, &["robot", "list", "--print-urdf", "mobile-arm"])).unwrap();
+    std::fs::write(folder.join("mobile-arm.urdf"), done(folder, &["robot", "list", "--print-urdf", "mobile-arm"]))
+        .unwrap();
     std::fs::write(folder.join("my.toml"), robot.replace(from, to)).unwrap();
     robot.lines().position(|line| line.contains(from.lines().next().unwrap())).unwrap() + 1
 }
@@ -109,7 +117,11 @@ fn what_is_wrong_with_a_robot_file_has_its_line() {
         ("xyz = [0, 0, 0.15]", "xyz = [0, 0.01, 0.15]", "10.0 mm beside the middle between the pads"),
         ("rpy = [0, -1.5707963267948966, 0]", "rpy = [0, 0, 0.7]", "the middle between the pads"),
         ("home = \"ready\"", "home = \"redy\"", "did you mean `ready`?"),
-        ("right = [-1.57, -0.4, 0, 2.0, 0, 1.54, 0]", "right = [-3.57, -0.4, 0, 2.0, 0, 1.54, 0]", "must be in [-2.9, 2.9]"),
+        (
+            "right = [-1.57, -0.4, 0, 2.0, 0, 1.54, 0]",
+            "right = [-3.57, -0.4, 0, 2.0, 0, 1.54, 0]",
+            "must be in [-2.9, 2.9]",
+        ),
         ("left = [1.57, -0.4, 0, 2.0, 0, 1.54, 0]", "left = [1.57, -0.4]", "has 2 entries, must have 7"),
         ("payload_kg = 2.0", "payload_kg = nan", "is NaN, must be above 0"),
         ("pad_length_m = 0.04", "pad_lenght_m = 0.04", "did you mean `pad_length_m`?"),
@@ -128,7 +140,11 @@ fn what_is_wrong_with_a_robot_file_has_its_line() {
 fn an_arm_that_moves_in_one_plane_is_refused_with_the_reason() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../darrt-primitives/task/tests/data/puck-arm");
     let said = refused(&data, &["robot", "check", "puck-arm.toml"]);
-    assert!(said.contains("puck-arm.toml:") && said.contains("`arm.to` is moved by 3 joints: the primitives bring the hand down"), "{said}");
+    assert!(
+        said.contains("puck-arm.toml:")
+            && said.contains("`arm.to` is moved by 3 joints: the primitives bring the hand down"),
+        "{said}"
+    );
 }
 
 #[test]

@@ -80,8 +80,7 @@ impl<'a> Means<'a> {
         let push = if is_own(slides, PUSH) {
             push
         } else {
-            push.and(fit(object.pushable(), "it is not `pushable`"))
-                .and_then(|()| steady(problem, object, robot))
+            push.and(fit(object.pushable(), "it is not `pushable`")).and_then(|()| steady(problem, object, robot))
         };
         Self { object, pick, place, push }
     }

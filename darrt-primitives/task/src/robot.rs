@@ -10,8 +10,8 @@ use darrt_primitives::contract::Contract;
 use darrt_primitives::kinematics::{RobotDescription, UrdfError};
 use darrt_primitives::manipulator::{Configuration, Manipulator};
 
-use crate::problem_file::{PrimitiveName, ProblemFile, Robot as RobotSettings};
 use crate::problem_file::suggest::nearest;
+use crate::problem_file::{PrimitiveName, ProblemFile, Robot as RobotSettings};
 use crate::robot_file::RobotFileError;
 
 /// A robot that problem files can be about.

@@ -19,7 +19,8 @@ fn settings(name: &str) -> RobotSettings {
 
 fn drawn(robot: &FileRobot, rng: &mut Stream) -> Configuration<Joints> {
     let values: Vec<f64> = robot.limits().iter().map(|limit| rng.random_range(limit.lower..=limit.upper)).collect();
-    let base = if robot.drives() { [rng.random_range(-1.0..1.0), 0.3, rng.random_range(-3.0..3.0)] } else { [0.2, -0.1, 0.5] };
+    let base =
+        if robot.drives() { [rng.random_range(-1.0..1.0), 0.3, rng.random_range(-3.0..3.0)] } else { [0.2, -0.1, 0.5] };
     Configuration { base, arm: Joints::from_values(&values).unwrap() }
 }
 

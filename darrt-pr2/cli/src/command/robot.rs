@@ -43,7 +43,9 @@ fn list(options: &RobotListOptions, output: &mut Output) -> Result<Exit, Failure
         rows.add_row([robot.name.to_owned(), source.file.title]);
     }
     output.print(&table::finished(rows, []))?;
-    output.print("\nPlan for one with `darrt plan PROBLEM --robot NAME`, copy one with `darrt robot list --print NAME > FILE`.")?;
+    output.print(
+        "\nPlan for one with `darrt plan PROBLEM --robot NAME`, copy one with `darrt robot list --print NAME > FILE`.",
+    )?;
     Ok(Exit::Solved)
 }
 
@@ -79,7 +81,10 @@ fn robot_line(name: &str, is_shipped: bool, problem: &Path) -> String {
         return format!("model = {}", quoted(name));
     }
     // From the folder of the problem, as far as that is simple; else from the root.
-    let folder = |path: &Path| path.parent().map(|folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.canonicalize().ok());
+    let folder = |path: &Path| {
+        path.parent()
+            .map(|folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.canonicalize().ok())
+    };
     let path = Path::new(name);
     let same = folder(path) == folder(problem);
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
@@ -113,6 +118,10 @@ fn new(options: &RobotNewOptions, output: &mut Output) -> Result<Exit, Failure> 
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let text = guess::robot_file(&options.urdf, folder).map_err(wrong)?;
     output::write_file(&place, text)?;
-    output.print(&format!("robot:    {}\nLook at the lines with a question mark, then: darrt robot check {}", path.display(), path.display()))?;
+    output.print(&format!(
+        "robot:    {}\nLook at the lines with a question mark, then: darrt robot check {}",
+        path.display(),
+        path.display()
+    ))?;
     Ok(Exit::Solved)
 }

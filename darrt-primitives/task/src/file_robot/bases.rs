@@ -40,7 +40,8 @@ impl Ring {
         // The wrist is the origin of the last joint's frame, or of one further in that the joints beyond it turn about.
         let mut wrist = chain.wrist_from_tool.inverse() * Point3::origin();
         let mut last = chain.joints.len();
-        while let Some(joint) = last.checked_sub(1).filter(|index| *index > 0).and_then(|index| chain.joints.get(index)) {
+        while let Some(joint) = last.checked_sub(1).filter(|index| *index > 0).and_then(|index| chain.joints.get(index))
+        {
             let inner = (joint.before.inverse() * Point3::origin()).coords;
             let off_axis = inner - joint.axis.into_inner() * inner.dot(&joint.axis);
             // A point on the last axis stays where it is in the hand; further in only what is at the same place does.
@@ -57,7 +58,8 @@ impl Ring {
         let farthest = |limit: &JointLimit| limit.lower.abs().max(limit.upper.abs());
         let slides = chain.joints.iter().zip(limits).take(last).filter(|(joint, _)| joint.slides);
         let slides: f64 = slides.map(|(_, limit)| farthest(limit)).sum();
-        let bones: f64 = chain.joints.iter().take(last).skip(1).map(|joint| joint.before.translation.vector.norm()).sum();
+        let bones: f64 =
+            chain.joints.iter().take(last).skip(1).map(|joint| joint.before.translation.vector.norm()).sum();
         let shoulder = chain.joints.first().map_or(Isometry3::identity(), |joint| joint.before) * Point3::origin();
         Self { shoulder, wrist, length_m: bones + slides, fixed, reach: Arc::default() }
     }

@@ -31,7 +31,10 @@ impl Joint {
     fn moved(&self, value: f64) -> Isometry3<f64> {
         if self.slides {
             let offset = self.before.rotation * (self.axis.into_inner() * value);
-            return Isometry3::from_parts(Translation3::from(self.before.translation.vector + offset), self.before.rotation);
+            return Isometry3::from_parts(
+                Translation3::from(self.before.translation.vector + offset),
+                self.before.rotation,
+            );
         }
         let turn = UnitQuaternion::from_axis_angle(&self.axis, value);
         Isometry3::from_parts(self.before.translation, self.before.rotation * turn)
@@ -89,7 +92,8 @@ impl ArmChain {
     /// The tool in the world.
     pub(super) fn world_from_tool(&self, base: &[f64; 3], arm: &[f64]) -> Isometry3<f64> {
         let world_from_base = world_from_base(base);
-        let wrist = self.joints.iter().zip(arm).fold(world_from_base, |pose, (joint, value)| pose * joint.moved(*value));
+        let wrist =
+            self.joints.iter().zip(arm).fold(world_from_base, |pose, (joint, value)| pose * joint.moved(*value));
         wrist * self.wrist_from_tool
     }
 

@@ -26,7 +26,8 @@ pub fn with_robot(
     let path = Path::new(name_or_path);
     let is_shipped = shipped::all().iter().any(|robot| robot.name == name_or_path);
     let is_path = !is_shipped && (path.extension().is_some() || path.exists());
-    (robot.model, robot.file) = if is_path { (None, Some(path.to_path_buf())) } else { (Some(name_or_path.to_owned()), None) };
+    (robot.model, robot.file) =
+        if is_path { (None, Some(path.to_path_buf())) } else { (Some(name_or_path.to_owned()), None) };
     (robot.urdf, robot.torso_m, robot.posture, robot.joints) = (None, None, None, None);
     (robot.other_posture, robot.other_joints) = (None, None);
     robot.shapeless.clear();
@@ -45,7 +46,11 @@ pub fn with_robot(
         problem.primitive_settings.retain(|name, _| !taken.contains(name));
         if !taken.is_empty() {
             let names: Vec<_> = taken.iter().map(PrimitiveName::as_str).collect();
-            changes.push(format!("without {}: the base of {} does not drive", names.join(" and "), loaded.source.file.name));
+            changes.push(format!(
+                "without {}: the base of {} does not drive",
+                names.join(" and "),
+                loaded.source.file.name
+            ));
         }
     }
     Ok((problem, changes))

@@ -27,7 +27,12 @@ pub fn robot_file(urdf: &Path, beside: &Path) -> Result<String, RobotFileError> 
     let wrong = |source| RobotFileError::Description { file: name.clone(), source };
     let description = RobotDescription::from_file(urdf).map_err(wrong)?;
     let folders = folders_above(urdf);
-    let refuse = |why: &str| RobotFileError::Invalid { file: name.clone(), line: 1, key: "robot".to_owned(), why: why.to_owned() };
+    let refuse = |why: &str| RobotFileError::Invalid {
+        file: name.clone(),
+        line: 1,
+        key: "robot".to_owned(),
+        why: why.to_owned(),
+    };
     let hand = hand::guess(&description, &mesh_folders(&folders)).map_err(|why| refuse(&why))?;
     let shapeless = description.links.iter().filter(|link| link.has_visual && link.collision.is_empty());
     let guess = Guess {
@@ -132,19 +137,26 @@ fn numbers(values: &[f64]) -> String {
 
 impl Guess {
     fn text(&self) -> String {
-        let names = |list: &[String]| format!("[{}]", list.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", "));
+        let names =
+            |list: &[String]| format!("[{}]", list.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", "));
         let mut out = String::new();
         let mut line = |text: String| {
             // Writing to a text does not fail.
             let _ = writeln!(out, "{text}");
         };
-        line("# A first robot file, guessed from the description. Look at every line with a question mark, then run".to_owned());
+        line(
+            "# A first robot file, guessed from the description. Look at every line with a question mark, then run"
+                .to_owned(),
+        );
         line("# `darrt robot check` on it. `docs/robot-format.md` explains all keys.".to_owned());
         line("format = \"darrt-robot\"\nversion = 1".to_owned());
         line(format!("name = {}", quoted(&self.name)));
         line(format!("urdf = {}", quoted(&self.urdf.to_string_lossy())));
         if !self.shapeless.is_empty() {
-            line(format!("# ? These links are seen but have no collision shape: planned as if they were air.\nshapeless = {}", names(&self.shapeless)));
+            line(format!(
+                "# ? These links are seen but have no collision shape: planned as if they were air.\nshapeless = {}",
+                names(&self.shapeless)
+            ));
         }
         line("home = \"home\"".to_owned());
         if !self.ignore.is_empty() {
@@ -152,7 +164,10 @@ impl Guess {
             let pairs: Vec<_> = self.ignore.iter().map(|pair| format!("  {},", names(pair))).collect();
             line(format!("ignore = [\n{}\n]", pairs.join("\n")));
         }
-        line("\n[base]\nkind = \"planar\"                 # ? fixed: bolted down; planar: drives any way; rail".to_owned());
+        line(
+            "\n[base]\nkind = \"planar\"                 # ? fixed: bolted down; planar: drives any way; rail"
+                .to_owned(),
+        );
         line(format!("\n[arm]                           # joints: {}", self.arm.joints.join(", ")));
         line(format!("from = {}\nto = {}", quoted(&self.arm.from), quoted(&self.arm.to)));
         line("payload_kg = 1.0                # ? see the data sheet\npush_force_n = 20               # ? sideways, at the hand".to_owned());
@@ -161,12 +176,21 @@ impl Guess {
         line(format!("link = {}\nxyz = {}\nrpy = {}", quoted(&hand.link), numbers(&hand.xyz), numbers(&hand.rpy)));
         line(format!("\n[gripper]\njoint = {}", quoted(&hand.joint)));
         line(format!("tips = {}      # that on the side of the tool's +y first", names(&hand.tips)));
-        line(format!("pad_length_m = {}            # ? from the tip back", numbers(&[hand.pad_length_m]).trim_matches(['[', ']'])));
+        line(format!(
+            "pad_length_m = {}            # ? from the tip back",
+            numbers(&[hand.pad_length_m]).trim_matches(['[', ']'])
+        ));
         line("grip_force_n = 30               # ? of each finger".to_owned());
         for (name, multiplier) in &hand.follow {
-            line(format!("follow.{} = {{ multiplier = {multiplier} }}     # ? the description lets it move freely", quoted(name)));
+            line(format!(
+                "follow.{} = {{ multiplier = {multiplier} }}     # ? the description lets it move freely",
+                quoted(name)
+            ));
         }
-        line(format!("\n[postures]                      # a value for each joint of the arm\nhome = {}", numbers(&self.home)));
+        line(format!(
+            "\n[postures]                      # a value for each joint of the arm\nhome = {}",
+            numbers(&self.home)
+        ));
         out
     }
 }

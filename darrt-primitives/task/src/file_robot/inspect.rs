@@ -83,15 +83,25 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
             loaded.source.line("tool")
         ));
     }
-    Ok(Inspection { name: loaded.source.file.name.clone(), understood: understood(&loaded, &robot, reach_down), odd, postures: robot.postures.keys().cloned().collect(), drives: !robot.ring.is_fixed(), reach_down })
+    Ok(Inspection {
+        name: loaded.source.file.name.clone(),
+        understood: understood(&loaded, &robot, reach_down),
+        odd,
+        postures: robot.postures.keys().cloned().collect(),
+        drives: !robot.ring.is_fixed(),
+        reach_down,
+    })
 }
 
 fn understood(loaded: &Loaded, robot: &FileRobot, reach_down: Option<([f64; 2], f64)>) -> Vec<String> {
     let file = &loaded.source.file;
     let mut lines = vec![format!("base:     {:?}", file.base.kind).to_lowercase()];
     for ((name, limit), speed) in loaded.amended.arm_joints.iter().zip(&robot.limits).zip(&robot.speeds.joints) {
-        let range =
-            if limit.is_unlimited() { "without limits".to_owned() } else { format!("{:.3} to {:.3}", limit.lower, limit.upper) };
+        let range = if limit.is_unlimited() {
+            "without limits".to_owned()
+        } else {
+            format!("{:.3} to {:.3}", limit.lower, limit.upper)
+        };
         lines.push(format!("joint:    {name}, {range}, planned at {speed:.2} per second"));
     }
     for (group, what) in [
@@ -112,7 +122,9 @@ fn understood(loaded: &Loaded, robot: &FileRobot, reach_down: Option<([f64; 2], 
     ));
     lines.push(format!("pairs:    {} of links are kept apart", robot.self_pairs().len()));
     if let Some(([low, high], distance)) = reach_down {
-        lines.push(format!("reach:    pointing down {distance} m ahead, tool from {low:.1} to {high:.1} m above the floor"));
+        lines.push(format!(
+            "reach:    pointing down {distance} m ahead, tool from {low:.1} to {high:.1} m above the floor"
+        ));
     }
     lines
 }
@@ -125,7 +137,9 @@ fn drawn(robot: &FileRobot, rng: &mut Stream) -> Option<Configuration<Joints>> {
     let values: Vec<f64> = robot
         .limits
         .iter()
-        .map(|limit| if limit.is_unlimited() { rng.random_range(-3.1..3.1) } else { rng.random_range(limit.lower..=limit.upper) })
+        .map(|limit| {
+            if limit.is_unlimited() { rng.random_range(-3.1..3.1) } else { rng.random_range(limit.lower..=limit.upper) }
+        })
         .collect();
     Some(Configuration { base: [0.0; 3], arm: Joints::from_values(&values)? })
 }
@@ -144,7 +158,9 @@ fn laws(robot: &FileRobot) -> Option<String> {
     let mut rng = rng(2);
     let max_gap_m = robot.hand().max_gap_m();
     // A base that is bolted down has one place.
-    let place = |rng: &mut Stream| if robot.ring.is_fixed() { [0.0; 3] } else { [rng.random_range(-1.0..1.0), 0.3, rng.random_range(-3.0..3.0)] };
+    let place = |rng: &mut Stream| {
+        if robot.ring.is_fixed() { [0.0; 3] } else { [rng.random_range(-1.0..1.0), 0.3, rng.random_range(-3.0..3.0)] }
+    };
     let mut configurations = Vec::new();
     for seed in 0..LAW_PAIRS {
         let (mut a, mut b) = (drawn(robot, &mut rng)?, drawn(robot, &mut rng)?);
@@ -155,7 +171,9 @@ fn laws(robot: &FileRobot) -> Option<String> {
         }
         configurations.extend([a, b]);
     }
-    check_reaches(robot, &configurations, 0, &ReachClaims { inverse: 0.5, base: 0.2 }).err().map(|broken| broken.to_string())
+    check_reaches(robot, &configurations, 0, &ReachClaims { inverse: 0.5, base: 0.2 })
+        .err()
+        .map(|broken| broken.to_string())
 }
 
 /// The distances of all pairs of links that may touch or not: `None` where it is not known.
@@ -173,11 +191,18 @@ fn distances(robot: &FileRobot, arm: &Joints, pairs: &[(usize, usize)]) -> Vec<O
 fn postures(loaded: &Loaded, robot: &FileRobot, odd: &mut Vec<String>) {
     for (name, arm) in &robot.postures {
         let pairs = robot.self_pairs();
-        let touching = distances(robot, arm, pairs).into_iter().zip(pairs).filter(|(distance, _)| distance.is_some_and(|d| d <= 0.0));
+        let touching = distances(robot, arm, pairs)
+            .into_iter()
+            .zip(pairs)
+            .filter(|(distance, _)| distance.is_some_and(|d| d <= 0.0));
         let names: Vec<_> = touching.map(|(_, pair)| pair_name(robot, *pair)).collect();
         if !names.is_empty() {
             let place = format!("{}:{}", loaded.source.name, loaded.source.line(&format!("postures.{name}")));
-            odd.push(format!("{place}: in the posture `{name}` {} touch: {}", counted(names.len() as u64, "pair"), names.join(", ")));
+            odd.push(format!(
+                "{place}: in the posture `{name}` {} touch: {}",
+                counted(names.len() as u64, "pair"),
+                names.join(", ")
+            ));
         }
     }
 }
@@ -219,7 +244,9 @@ fn joints(loaded: &Loaded, odd: &mut Vec<String>) {
         let variable = tree.variable_index(name).and_then(|index| tree.variables().get(index));
         if variable.is_some_and(|v| v.max_velocity <= 0.0) && loaded.source.file.arm.speeds.is_none() {
             let file = &loaded.source.name;
-            odd.push(format!("{file}: the description gives `{name}` no speed, it is planned with 1 per second: see `arm.speeds`"));
+            odd.push(format!(
+                "{file}: the description gives `{name}` no speed, it is planned with 1 per second: see `arm.speeds`"
+            ));
         }
     }
 }

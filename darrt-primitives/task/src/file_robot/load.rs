@@ -63,7 +63,8 @@ impl Loaded {
             source.located(Fault::new("shapeless", format!("does not fit the description: {error}")))
         })?;
         let folders = if urdf.is_some() { Vec::new() } else { folders_above(&path) };
-        let amended = amend(&source.file, description, &mesh_folders(&folders)).map_err(|fault| source.located(fault))?;
+        let amended =
+            amend(&source.file, description, &mesh_folders(&folders)).map_err(|fault| source.located(fault))?;
         Ok(Self { source, amended, mesh_folders: folders })
     }
 
@@ -72,8 +73,7 @@ impl Loaded {
         let file = || self.source.name.clone();
         let wrong = |source| RobotFileError::Description { file: file(), source };
         let tree = KinematicTree::new(&self.amended.description).map_err(wrong)?;
-        let bodies =
-            link_bodies(&self.amended.description, &tree, &mesh_folders(&self.mesh_folders)).map_err(wrong)?;
+        let bodies = link_bodies(&self.amended.description, &tree, &mesh_folders(&self.mesh_folders)).map_err(wrong)?;
         Ok((tree, bodies))
     }
 
@@ -117,8 +117,10 @@ impl Loaded {
         }
         let hand = self.hand(&layout, &bodies, tool, finger)?;
         let finger_limit = tree.variables().get(finger).map_or(JointLimit::UNLIMITED, |v| v.limit);
-        let levers_at = |place: &Place, corners: &[Point3<f64>]| Levers::new(&chain, &limits, place, finger_limit, corners);
-        let levers: Vec<_> = places.iter().zip(&links).map(|(place, link)| levers_at(place, &corners(&link.body))).collect();
+        let levers_at =
+            |place: &Place, corners: &[Point3<f64>]| Levers::new(&chain, &limits, place, finger_limit, corners);
+        let levers: Vec<_> =
+            places.iter().zip(&links).map(|(place, link)| levers_at(place, &corners(&link.body))).collect();
         let at_tool = Place { anchor: chain.joints.len(), steps: Vec::new(), offset: chain.wrist_from_tool };
         let tool_levers = levers_at(&at_tool, &[Point3::origin()]);
         let weights_m = tool_levers.arm.iter().map(|lever| (BENT * lever).max(LEAST_WEIGHT_M)).collect();
@@ -179,12 +181,13 @@ impl Loaded {
         let range = [limit.lower, limit.upper];
         let turns: Vec<f64> = left.0.steps.iter().map(|step| step.multiplier.abs()).collect();
         let no_law = || {
-            refuse("opens the pads neither in proportion to its value nor to a sine of it; such hands are not planned with")
+            refuse(
+                "opens the pads neither in proportion to its value nor to a sine of it; such hands are not planned with",
+            )
         };
         let (gap, end) = Law::of(gap, range, &turns).zip(Law::of(end, range, &turns)).ok_or_else(no_law)?;
-        let opening = Opening::new(gap, end, range, gripper.max_gap_m).ok_or_else(|| {
-            refuse("does not open the pads further and further, or not at all, between its limits")
-        })?;
+        let opening = Opening::new(gap, end, range, gripper.max_gap_m)
+            .ok_or_else(|| refuse("does not open the pads further and further, or not at all, between its limits"))?;
         Ok(ParallelHand {
             opening,
             tip_half_width_m: left.2.z,

@@ -40,7 +40,8 @@ pub(super) struct Reach {
 /// Which way is up in the hand, as a part of the sphere.
 fn part(pose: &Isometry3<f64>) -> usize {
     let up = pose.rotation.inverse() * Vector3::z();
-    let index = |share: f64, count: usize| (0..count - 1).take_while(|i| (*i as f64 + 1.0) / count as f64 <= share).count();
+    let index =
+        |share: f64, count: usize| (0..count - 1).take_while(|i| (*i as f64 + 1.0) / count as f64 <= share).count();
     let along = index((up.x + 1.0) / 2.0, PARTS[0]);
     let around = index(up.z.atan2(up.y) / TAU + 0.5, PARTS[1]);
     along * PARTS[1] + around
@@ -57,7 +58,8 @@ impl Reach {
         let mut poses = Vec::with_capacity(SAMPLES);
         for _ in 0..SAMPLES {
             for (slot, limit) in joints.iter_mut().zip(limits) {
-                let [low, high] = if limit.is_unlimited() { [-TAU / 2.0, TAU / 2.0] } else { [limit.lower, limit.upper] };
+                let [low, high] =
+                    if limit.is_unlimited() { [-TAU / 2.0, TAU / 2.0] } else { [limit.lower, limit.upper] };
                 *slot = rng.random_range(low..=high);
             }
             poses.push(chain.world_from_tool(&[0.0; 3], &joints));

@@ -35,7 +35,8 @@ impl TaskRobot for FileRobot {
         let start = robot.start(settings)?;
         let arm = loaded.amended.arm_joints.iter().cloned().zip(start.as_ref().iter().copied());
         let file = &loaded.source.file;
-        let names = |group| robot.links().iter().filter(move |link| link.group == group).map(|l| l.body.name.to_string());
+        let names =
+            |group| robot.links().iter().filter(move |link| link.group == group).map(|l| l.body.name.to_string());
         let link = |index: usize| robot.links().get(index).map_or_else(String::new, |link| link.body.name.to_string());
         Ok(RobotFacts {
             arm_joints: loaded.amended.arm_joints.clone(),

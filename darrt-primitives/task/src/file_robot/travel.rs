@@ -38,9 +38,7 @@ impl Levers {
         corners: &[Point3<f64>],
     ) -> Self {
         let mut arm = vec![0.0_f64; chain.joints.len()];
-        let reach = |at: &Isometry3<f64>| {
-            corners.iter().map(|corner| (at * corner).coords.norm()).fold(0.0, f64::max)
-        };
+        let reach = |at: &Isometry3<f64>| corners.iter().map(|corner| (at * corner).coords.norm()).fold(0.0, f64::max);
         // From the link inwards: how far its points are from the origin of the next frame.
         let mut norm = reach(&place.offset);
         for step in place.steps.iter().rev() {

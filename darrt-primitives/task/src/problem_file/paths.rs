@@ -28,7 +28,9 @@ impl ProblemFile {
 
     /// Whether the problem is complete only together with other files.
     pub(crate) fn names_files(&self) -> bool {
-        self.robot.urdf.is_some() || self.robot.file.is_some() || self.shapes().any(|(_, _, shape)| matches!(shape, ShapeSpec::Mesh { .. }))
+        self.robot.urdf.is_some()
+            || self.robot.file.is_some()
+            || self.shapes().any(|(_, _, shape)| matches!(shape, ShapeSpec::Mesh { .. }))
     }
 
     /// Reads every file that the problem names, and forgets it again: what cannot be read can then be told from what is

@@ -67,7 +67,8 @@ pub fn amend(
         arm_joints.insert(0, joint);
     }
     if arm_joints.len() > MAX_JOINTS {
-        let why = format!("is moved by {} joints below `arm.from`, at most {MAX_JOINTS} are planned with", arm_joints.len());
+        let why =
+            format!("is moved by {} joints below `arm.from`, at most {MAX_JOINTS} are planned with", arm_joints.len());
         return Err(Fault::new("arm.to", why));
     }
     if arm_joints.len() < LEAST_JOINTS {
@@ -114,7 +115,8 @@ fn arm_joints(file: &RobotFile, description: &RobotDescription) -> Result<Vec<St
         };
         if joint.kind != JointKind::Fixed {
             if joint.mimic.is_some() {
-                let why = format!("is moved by `{}`, which follows another joint; an arm's joints are free", joint.name);
+                let why =
+                    format!("is moved by `{}`, which follows another joint; an arm's joints are free", joint.name);
                 return Err(Fault::new("arm.to", why));
             }
             let (low, high) = (joint.limit.lower, joint.limit.upper);
@@ -229,12 +231,14 @@ fn stand(file: &RobotFile, description: &mut RobotDescription) -> Result<Option<
     let is_rail = base.kind == BaseKind::Rail;
     for (key, is_there) in [("base.rail_axis", base.rail_axis.is_some()), ("base.rail_m", base.rail_m.is_some())] {
         if is_there != is_rail {
-            let why = if is_rail { "is missing: a base on a rail needs it" } else { "is for a base of the kind \"rail\"" };
+            let why =
+                if is_rail { "is missing: a base on a rail needs it" } else { "is for a base of the kind \"rail\"" };
             return Err(Fault::new(key, why));
         }
     }
     if let (Some(axis), Some([low, high])) = (base.rail_axis, base.rail_m) {
-        let axis = Unit::try_new(Vector3::from(axis), 1e-6).ok_or_else(|| Fault::new("base.rail_axis", "has no length"))?;
+        let axis =
+            Unit::try_new(Vector3::from(axis), 1e-6).ok_or_else(|| Fault::new("base.rail_axis", "has no length"))?;
         if !(low < high && low.abs() <= 1e2 && high.abs() <= 1e2) {
             let why = format!("is [{low}, {high}], must be two ends in order, within 100 m");
             return Err(Fault::new("base.rail_m", why));
@@ -267,7 +271,10 @@ fn rest(file: &RobotFile, description: &RobotDescription, arm: &[String]) -> Res
         let key = format!("rest.{name}");
         let joint = &description.joints[named_joint(description, &key, name)?];
         if joint.kind == JointKind::Fixed || joint.mimic.is_some() || is_mine(name) {
-            return Err(Fault::new(key, "is not a joint that rests: it is fixed, follows another, or belongs to arm or hand"));
+            return Err(Fault::new(
+                key,
+                "is not a joint that rests: it is fixed, follows another, or belongs to arm or hand",
+            ));
         }
         let limit = joint.limit;
         let bounds = if limit.is_unlimited() { JointLimit::new(-PI, PI) } else { limit };
@@ -287,7 +294,8 @@ pub(super) fn solids(
     description: &RobotDescription,
     mesh_path: &dyn Fn(&str) -> Option<PathBuf>,
 ) -> Result<(KinematicTree, Vec<Option<darrt_geom::Body>>), Fault> {
-    let refuse = |error: darrt_primitives::kinematics::UrdfError| Fault::new("urdf", format!("cannot be used: {error}"));
+    let refuse =
+        |error: darrt_primitives::kinematics::UrdfError| Fault::new("urdf", format!("cannot be used: {error}"));
     let tree = KinematicTree::new(description).map_err(refuse)?;
     let bodies = link_bodies(description, &tree, mesh_path).map_err(refuse)?;
     Ok((tree, bodies))

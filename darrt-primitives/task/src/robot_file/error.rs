@@ -87,7 +87,8 @@ impl Fault {
         known: impl IntoIterator<Item = &'a str>,
     ) -> Self {
         let near = nearest(name, known).map(str::to_owned);
-        let why = format!("names the {kind} `{}`, which the description does not have{}", shown(name), hint(near.as_deref()));
+        let why =
+            format!("names the {kind} `{}`, which the description does not have{}", shown(name), hint(near.as_deref()));
         Self::new(key, why)
     }
 }

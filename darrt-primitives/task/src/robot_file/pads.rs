@@ -70,7 +70,8 @@ pub(super) fn box_in(
         let index = add_fixed(description, link, &pad, tip_from_pad);
         let centre = (cover.low + cover.high) / 2.0;
         let geometry = Geometry::Cuboid { size: cover.high - cover.low };
-        let placed = PlacedGeometry { link_from_geometry: Isometry3::translation(centre.x, centre.y, centre.z), geometry };
+        let placed =
+            PlacedGeometry { link_from_geometry: Isometry3::translation(centre.x, centre.y, centre.z), geometry };
         description.links[index].collision.push(placed);
         description.links[link].collision.clear();
         *name = pad;
@@ -108,7 +109,10 @@ fn cover(
     }
     let [closed, open] = in_tool(file, tree, tool, link).ok_or_else(|| refuse("which has no place".to_owned()))?;
     if (closed.translation.vector - open.translation.vector).norm() <= ROUNDING {
-        let why = format!("which `{}` does not move; if a joint of its own moves it, see `gripper.follow`", file.gripper.joint);
+        let why = format!(
+            "which `{}` does not move; if a joint of its own moves it, see `gripper.follow`",
+            file.gripper.joint
+        );
         return Err(refuse(why));
     }
     let turn = closed.rotation.angle_to(&open.rotation);

@@ -106,7 +106,8 @@ impl Source {
         let speeds = speeds.into_iter().flat_map(|(key, both)| both.map(|value| (key, value, 1e2)));
         let gap = file.gripper.max_gap_m.map(|value| ("gripper.max_gap_m", value, 1.0));
         let lists = [("arm.speeds", &file.arm.speeds), ("arm.accelerations", &file.arm.accelerations)];
-        let lists = lists.into_iter().flat_map(|(key, list)| list.iter().flatten().map(move |value| (key, *value, 1e4)));
+        let lists =
+            lists.into_iter().flat_map(|(key, list)| list.iter().flatten().map(move |value| (key, *value, 1e4)));
         for (key, value, most) in positive.into_iter().chain(speeds).chain(gap).chain(lists) {
             if !(value > 0.0 && value <= most) {
                 return Err(wrong(key, value, &format!("above 0 and at most {most}")));

@@ -146,13 +146,17 @@ fn describe(tree: &KinematicTree, bodies: &[Option<Body>], hand: usize, fingers:
     }
     let end = [a, b].iter().map(|(low, high)| low.dot(&x).max(high.dot(&x))).fold(f64::NEG_INFINITY, f64::max);
     let start = [a, b].iter().map(|(low, high)| low.dot(&x).min(high.dot(&x))).fold(f64::INFINITY, f64::min);
-    let inner = |side: f64, (low, high): (Vector3<f64>, Vector3<f64>)| side * (side * low.dot(&y)).min(side * high.dot(&y));
+    let inner =
+        |side: f64, (low, high): (Vector3<f64>, Vector3<f64>)| side * (side * low.dot(&y)).min(side * high.dot(&y));
     let between = f64::midpoint(inner(1.0, a), inner(-1.0, b));
     let z = x.cross(&y);
     let origin = x * (end - BEHIND_TIPS_M) + y * between + z * middle.dot(&z);
-    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, y, z])));
+    let rotation =
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, y, z])));
     let (roll, pitch, yaw) = rotation.euler_angles();
-    let follow = others.iter().filter_map(|variable| Some((joint_name(*variable)?, follow_factor(limit(driver)?, limit(*variable)?))));
+    let follow = others
+        .iter()
+        .filter_map(|variable| Some((joint_name(*variable)?, follow_factor(limit(driver)?, limit(*variable)?))));
     Some(HandGuess {
         link: name(hand)?,
         xyz: origin.into(),
@@ -165,7 +169,10 @@ fn describe(tree: &KinematicTree, bodies: &[Option<Body>], hand: usize, fingers:
 }
 
 /// A joint with the mirrored range moves the other way.
-fn follow_factor(driver: darrt_primitives::kinematics::JointLimit, other: darrt_primitives::kinematics::JointLimit) -> f64 {
+fn follow_factor(
+    driver: darrt_primitives::kinematics::JointLimit,
+    other: darrt_primitives::kinematics::JointLimit,
+) -> f64 {
     let same = (driver.lower - other.lower).abs() + (driver.upper - other.upper).abs();
     let mirrored = (driver.lower + other.upper).abs() + (driver.upper + other.lower).abs();
     if mirrored < same { -1.0 } else { 1.0 }

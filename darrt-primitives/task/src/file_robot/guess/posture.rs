@@ -39,7 +39,8 @@ pub(super) fn search(loaded: &Loaded) -> Result<Found, RobotFileError> {
     let joined = pairs.iter().zip(&touches).filter(|(_, count)| is_joined(count));
     // The file names links, not the pads that take their place.
     let ignore = joined.map(|((a, b), _)| [name(*a), name(*b)].map(|name| name.trim_end_matches("_pad").to_owned()));
-    let kept: Vec<_> = pairs.iter().zip(&touches).filter(|(_, count)| !is_joined(count)).map(|(pair, _)| *pair).collect();
+    let kept: Vec<_> =
+        pairs.iter().zip(&touches).filter(|(_, count)| !is_joined(count)).map(|(pair, _)| *pair).collect();
     let mut best: Option<(f64, Vec<f64>)> = None;
     for _ in 0..TRIES {
         let (ahead, side) = (rng.random_range(0.2..0.7), rng.random_range(-0.2..0.2));
@@ -54,7 +55,11 @@ pub(super) fn search(loaded: &Loaded) -> Result<Found, RobotFileError> {
         let values = arm.as_ref().iter().zip(robot.limits());
         // How far its joints are from their limits, as a share of half their range.
         let room = values.map(|(value, limit)| {
-            if limit.is_unlimited() { 1.0 } else { (value - limit.lower).min(limit.upper - value) / (0.5 * (limit.upper - limit.lower)) }
+            if limit.is_unlimited() {
+                1.0
+            } else {
+                (value - limit.lower).min(limit.upper - value) / (0.5 * (limit.upper - limit.lower))
+            }
         });
         let room = room.fold(1.0, f64::min);
         if best.as_ref().is_some_and(|(most, _)| *most >= room) {
@@ -82,7 +87,8 @@ fn apart_m(robot: &FileRobot, arm: &Arm, (a, b): (usize, usize)) -> f64 {
     let gap_m = robot.hand().max_gap_m();
     robot.link_poses(&Configuration { base: [0.0; 3], arm: *arm }, gap_m, &mut poses);
     let links = robot.links();
-    let (Some(first), Some(second), Some(at), Some(bt)) = (links.get(a), links.get(b), poses.get(a), poses.get(b)) else {
+    let (Some(first), Some(second), Some(at), Some(bt)) = (links.get(a), links.get(b), poses.get(a), poses.get(b))
+    else {
         return f64::INFINITY;
     };
     clearance::between(&first.body, at, &second.body, bt).map_or(f64::INFINITY, |found| found.distance)
