@@ -1,9 +1,9 @@
 //! Inverse kinematics of any serial chain, for robots without a closed form.
 //!
-//! A pose is answered in attempts. Each starts at that configuration of a random window of a [table](seeds) whose pose is
+//! A pose is answered in attempts. Each starts at that configuration of a window, drawn at random, of a [table](seeds) whose pose is
 //! nearest to the one asked for, and descends from there by damped least squares: `dq = J^T (J J^T + lambda I)^-1 e` over the
 //! joints that no limit holds, `e` being the pose error and `lambda` growing with it. An attempt that comes no nearer is given
-//! up and the next one starts from another window. So the answers of a redundant chain differ from draw to draw, and the same
+//! up and the next one starts from the window after it. So the answers of a redundant chain differ from draw to draw, and the same
 //! draws give the same answer on any machine of the same arithmetic: nothing reads a clock. A call does not allocate.
 
 mod constants;
@@ -45,7 +45,7 @@ pub struct InverseOptions {
 impl Default for InverseOptions {
     fn default() -> Self {
         // Half of what the laws of a manipulator ask, so that what a caller computes from the joints stays within them.
-        Self { position_tolerance: 5e-10, rotation_tolerance: 5e-10, attempts: 40, iterations: 40, soft_limits: true }
+        Self { position_tolerance: 5e-10, rotation_tolerance: 5e-10, attempts: 16, iterations: 40, soft_limits: true }
     }
 }
 
@@ -149,8 +149,9 @@ impl ChainInverse {
         }
         let target = Target::new(base_from_tool);
         let mut joints = JointValues::new();
-        for _ in 0..self.options.attempts {
-            self.seeds.nearest(base_from_tool, rng, &mut joints);
+        let first = Seeds::draw(rng);
+        for attempt in 0..self.options.attempts {
+            self.seeds.nearest(base_from_tool, first, attempt, &mut joints);
             if let End::Reached = self.descend(&target, &mut joints, Turns::Free) {
                 self.wrap(&mut joints);
                 return Some(joints);

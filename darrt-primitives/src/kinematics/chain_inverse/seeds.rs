@@ -13,14 +13,15 @@ use super::{JointValues, MOST_JOINTS};
 use crate::kinematics::limit::JointLimit;
 
 /// Configurations in the table.
-const COUNT: usize = 4096;
-/// How many of them an attempt looks at.
+const COUNT: usize = 8192;
+/// How many of them an attempt looks at: so many attempts have seen all.
 const WINDOW: usize = 512;
 
 /// Poses of configurations all over the joint space.
 #[derive(Debug, Clone)]
 pub(super) struct Seeds {
-    /// Position (x, y, z; m) and rotation (w, x, y, z) of the tool for each, one row per coordinate.
+    /// Position (x, y, z; m) and rotation (w, x, y, z) of the tool for each, one row per coordinate; the first `WINDOW` stand
+    /// at the end again, so that a window may go past it.
     poses: [Vec<f32>; 7],
     /// Where each joint may start, and the step of its recurrence.
     joints: Vec<Range>,
@@ -46,13 +47,13 @@ impl Seeds {
         };
         let joints: Vec<Range> = limits.iter().zip(constants.turning()).map(range).collect();
         let mut new = Self {
-            poses: std::array::from_fn(|_| Vec::with_capacity(COUNT)),
+            poses: std::array::from_fn(|_| Vec::with_capacity(COUNT + WINDOW)),
             joints,
             rotation_weight: (constants.length_m() * constants.length_m()) as f32,
         };
         let mut values = JointValues::new();
-        for index in 0..COUNT {
-            new.values(index, &mut values);
+        for index in 0..COUNT + WINDOW {
+            new.values(index % COUNT, &mut values);
             for (row, coordinate) in new.poses.iter_mut().zip(coordinates(&constants.pose(&values))) {
                 row.push(coordinate);
             }
@@ -60,9 +61,21 @@ impl Seeds {
         new
     }
 
-    /// Writes the configuration of a random window whose pose is nearest to `base_from_tool`.
-    pub(super) fn nearest(&self, base_from_tool: &Isometry3<f64>, rng: &mut dyn Rng, values: &mut JointValues) {
-        let start = rng.random_range(0..=COUNT - WINDOW);
+    /// Where the first window of a call starts.
+    pub(super) fn draw(rng: &mut dyn Rng) -> usize {
+        rng.random_range(0..COUNT)
+    }
+
+    /// Writes the configuration whose pose is nearest to `base_from_tool` of those in the window that is the `attempt`th after
+    /// the one that starts at `first`.
+    pub(super) fn nearest(
+        &self,
+        base_from_tool: &Isometry3<f64>,
+        first: usize,
+        attempt: usize,
+        values: &mut JointValues,
+    ) {
+        let start = (first + attempt.wrapping_mul(WINDOW)) % COUNT;
         let wanted = coordinates(base_from_tool);
         let row = |i: usize| self.poses.get(i).and_then(|row| row.get(start..start + WINDOW)).unwrap_or_default();
         let rows: [&[f32]; 7] = std::array::from_fn(row);
@@ -76,7 +89,7 @@ impl Seeds {
             *distance = away[0] * away[0] + away[1] * away[1] + away[2] * away[2] + self.rotation_weight * turn;
         }
         let nearest = distances.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(i, _)| i);
-        self.values(start + nearest, values);
+        self.values((start + nearest) % COUNT, values);
     }
 
     /// The configuration at `index`.

@@ -7,7 +7,7 @@ use crate::kinematics::limit::JointLimit;
 use std::f64::consts::TAU;
 
 /// Share of the squared error that damps.
-const DAMPING: f64 = 0.1;
+const DAMPING: f64 = 0.03;
 /// Least damping: what keeps the system solvable when joints are lined up, and where the chain has fewer than six.
 const LEAST_DAMPING: f64 = 1e-12;
 
