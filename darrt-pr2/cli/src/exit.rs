@@ -7,6 +7,7 @@ use crate::generate::GenerateError;
 use darrt_task::picture::PictureError;
 use darrt_task::plan_file::PlanFileError;
 use darrt_task::problem_file::ProblemFileError;
+use darrt_task::robot_file::RobotFileError;
 use darrt_task::text::on_one_line;
 use darrt_task::viewer::ViewerError;
 
@@ -56,6 +57,12 @@ impl Failure {
 
 impl From<ProblemFileError> for Failure {
     fn from(error: ProblemFileError) -> Self {
+        Self::input(error.to_string())
+    }
+}
+
+impl From<RobotFileError> for Failure {
+    fn from(error: RobotFileError) -> Self {
         Self::input(error.to_string())
     }
 }

@@ -7,7 +7,7 @@ use darrt_task::file_robot::{guess, shipped, trial};
 use darrt_task::picture::{Extent, Format, Story};
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
-use darrt_task::robot_file::{RobotFileError, Source};
+use darrt_task::robot_file::Source;
 
 use crate::args::{RobotCheckOptions, RobotCommand, RobotListOptions, RobotNewOptions, RobotOptions};
 use crate::drawing;
@@ -27,19 +27,15 @@ pub(crate) fn run(program: &dyn Program, options: &RobotOptions, output: &mut Ou
     }
 }
 
-fn wrong(error: RobotFileError) -> Failure {
-    Failure::input(error.to_string())
-}
-
 fn list(options: &RobotListOptions, output: &mut Output) -> Result<Exit, Failure> {
     if let Some(name) = options.print.as_ref().or(options.print_urdf.as_ref()) {
-        let robot = shipped::find(name).map_err(wrong)?;
+        let robot = shipped::find(name)?;
         output.print(if options.print.is_some() { robot.text } else { robot.urdf }.trim_end())?;
         return Ok(Exit::Solved);
     }
     let mut rows = table::with_header(["name", "what it is"]);
     for robot in shipped::all() {
-        let source = Source::from_text(robot.text, robot.name).map_err(wrong)?;
+        let source = Source::from_text(robot.text, robot.name)?;
         rows.add_row([robot.name.to_owned(), source.file.title]);
     }
     output.print(&table::finished(rows, []))?;
@@ -51,7 +47,7 @@ fn list(options: &RobotListOptions, output: &mut Output) -> Result<Exit, Failure
 
 fn check(program: &dyn Program, options: &RobotCheckOptions, output: &mut Output) -> Result<Exit, Failure> {
     let name = &options.robot;
-    let inspection = inspect(name).map_err(wrong)?;
+    let inspection = inspect(name)?;
     let is_shipped = shipped::all().iter().any(|robot| robot.name == *name);
     output.print(&format!("{name}: {}", inspection.name))?;
     inspection.understood.iter().try_for_each(|line| output.print(line))?;
@@ -88,7 +84,7 @@ fn robot_line(name: &str, is_shipped: bool, problem: &Path) -> String {
     let path = Path::new(name);
     let same = folder(path) == folder(problem);
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
-    let file = if same { path.file_name().map(PathBuf::from).unwrap_or(whole) } else { whole };
+    let file = if same { path.file_name().map_or(whole, PathBuf::from) } else { whole };
     format!("file = {}", quoted(&file.to_string_lossy()))
 }
 
@@ -116,7 +112,7 @@ fn new(options: &RobotNewOptions, output: &mut Output) -> Result<Exit, Failure> 
     }
     let place = output::writable(&path)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let text = guess::robot_file(&options.urdf, folder).map_err(wrong)?;
+    let text = guess::robot_file(&options.urdf, folder)?;
     output::write_file(&place, text)?;
     output.print(&format!(
         "robot:    {}\nLook at the lines with a question mark, then: darrt robot check {}",

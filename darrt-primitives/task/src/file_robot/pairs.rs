@@ -44,7 +44,8 @@ pub(super) fn pairs(
             (Some(a), Some(b)) => above(tree, numbers, *a) == Some(*b) || above(tree, numbers, *b) == Some(*a),
             _ => false,
         };
-        !is_rigid(a, b) && !(is_hand(a) && is_hand(b)) && !neighbours() && !ignored.contains(&(a, b))
+        let is_of_hand = is_hand(a) && is_hand(b);
+        !(is_rigid(a, b) || is_of_hand || neighbours() || ignored.contains(&(a, b)))
     });
     Ok(kept.collect())
 }

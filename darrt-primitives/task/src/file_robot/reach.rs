@@ -18,6 +18,8 @@ use super::chain::ArmChain;
 const SAMPLES: usize = 20_000;
 /// Heights that are kept apart, metres.
 const HEIGHT_M: f64 = 0.1;
+/// So many of them at most: a rail may be long, and may go up.
+const MOST_LEVELS: u32 = 1000;
 /// Parts of the sphere of directions: by how far up in the hand is along its x axis, and around it.
 const PARTS: [usize; 2] = [8, 10];
 
@@ -42,7 +44,7 @@ fn part(pose: &Isometry3<f64>) -> usize {
     let up = pose.rotation.inverse() * Vector3::z();
     let index =
         |share: f64, count: usize| (0..count - 1).take_while(|i| (*i as f64 + 1.0) / count as f64 <= share).count();
-    let along = index((up.x + 1.0) / 2.0, PARTS[0]);
+    let along = index(f64::midpoint(up.x, 1.0), PARTS[0]);
     let around = index(up.z.atan2(up.y) / TAU + 0.5, PARTS[1]);
     along * PARTS[1] + around
 }
@@ -67,7 +69,7 @@ impl Reach {
         let heights = || poses.iter().map(|pose| pose.translation.z);
         let lowest = heights().fold(f64::INFINITY, f64::min);
         let highest = heights().fold(f64::NEG_INFINITY, f64::max);
-        let levels = (0..).take_while(|level| lowest + f64::from(*level) * HEIGHT_M <= highest).count();
+        let levels = (0..MOST_LEVELS).take_while(|level| lowest + f64::from(*level) * HEIGHT_M <= highest).count();
         let mut reach = Self { lowest, levels, cells: vec![Vec::new(); levels * PARTS[0] * PARTS[1]] };
         for pose in &poses {
             let seen = Seen { at: [pose.translation.x, pose.translation.y], axes: axes(pose) };

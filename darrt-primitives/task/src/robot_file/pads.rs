@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use darrt_geom::{Body, Shape};
 use darrt_primitives::kinematics::urdf::{Geometry, PlacedGeometry};
 use darrt_primitives::kinematics::{KinematicTree, RobotDescription};
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use super::RobotFile;
 use super::amend::{add_fixed, link_index, solids};
@@ -66,7 +66,7 @@ pub(super) fn box_in(
             continue;
         }
         let pad = format!("{name}_pad");
-        let tip_from_pad = Isometry3::from_parts(Default::default(), cover.tool_from_tip.inverse());
+        let tip_from_pad = Isometry3::from_parts(Translation3::identity(), cover.tool_from_tip.inverse());
         let index = add_fixed(description, link, &pad, tip_from_pad);
         let centre = (cover.low + cover.high) / 2.0;
         let geometry = Geometry::Cuboid { size: cover.high - cover.low };

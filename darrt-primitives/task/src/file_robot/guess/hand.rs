@@ -108,12 +108,12 @@ fn finger(tree: &KinematicTree, bodies: &[Option<Body>], top: usize) -> Option<F
         }
     };
     let has_shape = |link: &usize| bodies.get(*link).is_some_and(Option::is_some);
-    let tip = below.iter().copied().filter(has_shape).filter(|link| is_moved(*link)).last()?;
+    let tip = below.iter().copied().filter(has_shape).rfind(|link| is_moved(*link))?;
     is_bounded.then_some(Finger { tip, variables })
 }
 
 fn describe(tree: &KinematicTree, bodies: &[Option<Body>], hand: usize, fingers: [&Finger; 2]) -> Option<HandGuess> {
-    let name = |link: usize| tree.link_names().get(link).map(|name| name.to_string());
+    let name = |link: usize| tree.link_names().get(link).map(ToString::to_string);
     let joint_name = |variable: usize| tree.variables().get(variable).map(|v| v.name.to_string());
     let driver = *fingers[0].variables.first()?;
     let mut others: Vec<usize> = fingers.iter().flat_map(|finger| finger.variables.iter().copied()).collect();
