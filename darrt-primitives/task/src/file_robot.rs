@@ -24,7 +24,7 @@ use arrayvec::ArrayVec;
 use darrt_primitives::arm_space::difference;
 use darrt_primitives::joints::{Joints, MAX_JOINTS};
 use darrt_primitives::kinematics::JointLimit;
-use darrt_primitives::manipulator::{Configuration, Hand, Manipulator, RobotLink};
+use darrt_primitives::manipulator::{Configuration, Hand, LinkGroup, Manipulator, RobotLink};
 use nalgebra::Isometry3;
 use rand::Rng;
 
@@ -107,6 +107,15 @@ impl FileRobot {
     /// How its base moves.
     pub fn base_kind(&self) -> BaseKind {
         self.base_kind
+    }
+
+    /// The lowest point of what is rigid to the base, and the one farthest ahead, metres in the frame of the base.
+    fn base_extent_m(&self) -> (f64, f64) {
+        let rigid = self.links.iter().zip(&self.places).filter(|(link, _)| link.group == LinkGroup::Base);
+        rigid.fold((f64::INFINITY, 0.0), |(lowest, front), (link, place)| {
+            let ahead = travel::corners(&link.body).into_iter().map(|corner| (place.offset * corner).x);
+            (load::lowest_m(&link.body, &place.offset).min(lowest), ahead.fold(front, f64::max))
+        })
     }
 
     /// The ways of the joints, of the base, and of its heading.

@@ -42,6 +42,7 @@ pub fn robot_file(urdf: &Path, beside: &Path) -> Result<String, RobotFileError> 
         arm: arm(&description, &hand).ok_or_else(|| refuse("has no joint between its root and its hand"))?,
         hand,
         home: Vec::new(),
+        base_z: 0.0,
         ignore: Vec::new(),
     };
     // Read with all joints where they are nearest to 0, it tells which postures are of use.
@@ -50,11 +51,13 @@ pub fn robot_file(urdf: &Path, beside: &Path) -> Result<String, RobotFileError> 
         Some(joint.soft_limit.clamp(0.0))
     });
     let guess = Guess { home: home.collect(), ..guess };
-    let (home, ignore) = match loaded(&guess, urdf) {
-        Ok(loaded) => posture::search(&loaded)?,
-        Err(_) => (None, Vec::new()),
-    };
-    let home = home.unwrap_or(guess.home);
+    // What cannot be read is written all the same: `darrt robot check` says what is wrong with it.
+    let Ok(robot) = loaded(&guess, urdf).and_then(|loaded| loaded.robot_anywhere()) else { return Ok(guess.text()) };
+    let (lowest_m, _) = robot.base_extent_m();
+    let base_z = if lowest_m < 0.0 { (-lowest_m * 1e4).ceil() / 1e4 } else { 0.0 };
+    let guess = Guess { base_z, ..guess };
+    let (home, ignore) = posture::search(&loaded(&guess, urdf)?)?;
+    let home = home.unwrap_or_else(|| guess.home.clone());
     Ok(Guess { home, ignore, ..guess }.text())
 }
 
@@ -118,6 +121,8 @@ struct Guess {
     arm: ArmGuess,
     hand: HandGuess,
     home: Vec<f64>,
+    /// How far the root must be raised, metres.
+    base_z: f64,
     ignore: Vec<[String; 2]>,
 }
 
@@ -168,6 +173,9 @@ impl Guess {
             "\n[base]\nkind = \"planar\"                 # ? fixed: bolted down; planar: drives any way; rail"
                 .to_owned(),
         );
+        if self.base_z > 0.0 {
+            line(format!("xyz = [0, 0, {}]            # its lowest point is on the floor", self.base_z));
+        }
         line(format!("\n[arm]                           # joints: {}", self.arm.joints.join(", ")));
         line(format!("from = {}\nto = {}", quoted(&self.arm.from), quoted(&self.arm.to)));
         line("payload_kg = 1.0                # ? see the data sheet\npush_force_n = 20               # ? sideways, at the hand".to_owned());

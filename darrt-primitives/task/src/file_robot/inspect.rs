@@ -32,6 +32,9 @@ const HEIGHTS: (f64, u32) = (0.1, 21);
 /// Distances from the base at which it is tried, metres.
 const DISTANCES_M: [f64; 6] = [0.3, 0.45, 0.6, 0.75, 0.9, 1.05];
 
+/// So far before the base a hand works at least, metres.
+const BEFORE_M: f64 = 0.25;
+
 /// What was found.
 #[derive(Debug, Clone)]
 pub struct Inspection {
@@ -256,7 +259,9 @@ fn reach_down(robot: &FileRobot) -> Option<([f64; 2], f64)> {
     let mut rng = rng(4);
     let mut best: Option<([f64; 2], f64)> = None;
     let down = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::FRAC_PI_2);
-    for distance in DISTANCES_M {
+    // Not above what carries the arm, where no table can be.
+    let (_, front) = robot.base_extent_m();
+    for distance in DISTANCES_M.into_iter().filter(|distance| *distance >= front + BEFORE_M) {
         let mut reached = (0..HEIGHTS.1).map(|i| f64::from(i) * HEIGHTS.0).filter(|height| {
             let tool = Isometry3::from_parts(Vector3::new(distance, 0.0, *height).into(), down);
             robot.inverse(&[0.0; 3], &tool, &mut rng).is_some()

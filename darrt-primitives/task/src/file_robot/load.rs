@@ -8,7 +8,7 @@ use darrt_primitives::kinematics::{
     JointLimit, KinematicTree, KinematicsError, RobotDescription, folders_above, link_bodies, mesh_folders,
 };
 use darrt_primitives::manipulator::{JointVector as _, LinkGroup, RobotLink};
-use nalgebra::{Isometry3, Point3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::bases::Ring;
 use super::chain::{Driver, Layout, Place};
@@ -21,6 +21,8 @@ use crate::problem_file::Robot as RobotSettings;
 use crate::robot_file::error::Fault;
 use crate::robot_file::{Amended, RobotFileError, Source, amend};
 
+/// So far a wheel may press into the floor, metres: as far as the verifier lets it.
+const FLOOR_M: f64 = 1e-3;
 /// Share of a joint's speed limit that a robot is planned with where its file does not say.
 const SPEED_SHARE: f64 = 0.5;
 /// The speed of a joint that nobody limits, radians or metres per second.
@@ -96,6 +98,15 @@ impl Loaded {
 
     /// The robot, its base at `base`.
     pub(super) fn robot(&self, kind: Limits, base: [f64; 3]) -> Result<FileRobot, RobotFileError> {
+        self.built(kind, base, true)
+    }
+
+    /// The robot wherever its lowest point may be.
+    pub(super) fn robot_anywhere(&self) -> Result<FileRobot, RobotFileError> {
+        self.built(Limits::Soft, [0.0; 3], false)
+    }
+
+    fn built(&self, kind: Limits, base: [f64; 3], is_placed: bool) -> Result<FileRobot, RobotFileError> {
         let (tree, bodies) = self.solids()?;
         let at = |key: &str, why: &str| self.source.located(Fault::new(key, why));
         let no_layout = || at("arm", "does not fit the description");
@@ -114,6 +125,9 @@ impl Loaded {
             links.push(RobotLink { body: body.clone(), group: group(&place, chain.joints.len()) });
             places.push(place);
             numbers.push(link);
+        }
+        if is_placed {
+            self.check_floor(&links, &places)?;
         }
         let hand = self.hand(&layout, &bodies, tool, finger)?;
         let finger_limit = tree.variables().get(finger).map_or(JointLimit::UNLIMITED, |v| v.limit);
@@ -149,6 +163,23 @@ impl Loaded {
             postures,
             home: file.home.clone(),
         })
+    }
+
+    /// What is rigid to the base stands on the floor, not in it.
+    fn check_floor(&self, links: &[RobotLink], places: &[Place]) -> Result<(), RobotFileError> {
+        let rigid = links.iter().zip(places).filter(|(link, _)| link.group == LinkGroup::Base);
+        for (link, place) in rigid {
+            let lowest_m = lowest_m(&link.body, &place.offset);
+            if lowest_m < -FLOOR_M {
+                let why = format!(
+                    "puts `{}` {:.1} mm into the floor: raise its z by so much",
+                    link.body.name,
+                    -1e3 * lowest_m
+                );
+                return Err(self.source.located(Fault::new("base.xyz", why)));
+            }
+        }
+        Ok(())
     }
 
     /// The opening of the hand, from where the pads are.
@@ -243,6 +274,15 @@ impl Loaded {
         }
         Ok(postures)
     }
+}
+
+/// The height of a body's lowest point, metres.
+pub(super) fn lowest_m(body: &Body, world_from_body: &Isometry3<f64>) -> f64 {
+    let parts = body.parts.iter().map(|part| {
+        let at = world_from_body * part.body_from_shape;
+        at.translation.z - part.shape.support_extent(&(at.rotation.inverse() * -Vector3::z()))
+    });
+    parts.fold(f64::INFINITY, f64::min)
 }
 
 /// What carries a link along.

@@ -7,7 +7,7 @@ const NOWHERE_M: f64 = 0.4;
 /// How far the tool stays above the table at least, metres.
 const ABOVE_M: f64 = 0.15;
 /// So much of the table lies nearer to the robot than the cup, metres.
-const NEAR_M: f64 = 0.15;
+const NEAR_M: f64 = 0.1;
 
 /// The text of the problem. `robot` are the lines that name the robot in the table `[robot]`; `drives` says whether its base does.
 pub fn problem(inspection: &Inspection, robot: &str, drives: bool) -> String {
