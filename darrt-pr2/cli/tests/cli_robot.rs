@@ -94,6 +94,29 @@ fn a_robot_that_is_bolted_down_plans_what_it_reaches_and_says_why_not() {
     assert!(text(&output).contains("the base moves, which is bolted down"), "{}", text(&output));
 }
 
+#[test]
+fn a_rail_is_a_joint_of_the_arm() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let robot = done(folder, &["robot", "list", "--print", "table-arm"]);
+    let robot = robot.replace("kind = \"fixed\"", "kind = \"rail\"\nrail_axis = [0, 1, 0]\nrail_m = [-0.6, 0.6]");
+    let robot = robot
+        .replace("ready = [", "ready = [0, ")
+        .replace("left = [", "left = [0, ")
+        .replace("right = [", "right = [0, ");
+    std::fs::write(folder.join("my.toml"), robot).unwrap();
+    std::fs::write(folder.join("table-arm.urdf"), done(folder, &["robot", "list", "--print-urdf", "table-arm"]))
+        .unwrap();
+    let said = done(folder, &["robot", "check", "my.toml", "--no-picture", "--problem", "first.toml"]);
+    assert!(said.contains("joint:    rail, -0.600 to 0.600") && said.ends_with("nothing is odd\n"), "{said}");
+    done(folder, &["plan", "first.toml", "--no-picture"]);
+    let plan = std::fs::read_to_string(folder.join("first.plan.json")).unwrap();
+    let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
+    let waypoints = plan["steps"].as_array().unwrap().iter().flat_map(|step| step["waypoints"].as_array().unwrap());
+    assert!(waypoints.clone().any(|waypoint| waypoint["joints"]["rail"] != 0.0), "the rail is used");
+    assert!(waypoints.clone().all(|waypoint| waypoint["base"] == serde_json::json!([0.0, 0.0, 0.0])));
+}
+
 /// A robot file in which a line is another one.
 fn changed(folder: &Path, from: &str, to: &str) -> usize {
     let robot = done(folder, &["robot", "list", "--print", "mobile-arm"]);
@@ -116,6 +139,7 @@ fn what_is_wrong_with_a_robot_file_has_its_line() {
         ("tips = [\"left_finger\", \"right_finger\"]", "tips = [\"right_finger\", \"left_finger\"]", "overlap by"),
         ("xyz = [0, 0, 0.15]", "xyz = [0, 0.01, 0.15]", "10.0 mm beside the middle between the pads"),
         ("rpy = [0, -1.5707963267948966, 0]", "rpy = [0, 0, 0.7]", "the middle between the pads"),
+        ("kind = \"planar\"", "xyz = [0, 0, -0.1]\nkind = \"planar\"", "puts `wagon` 100.0 mm into the floor"),
         ("home = \"ready\"", "home = \"redy\"", "did you mean `ready`?"),
         (
             "right = [-1.57, -0.4, 0, 2.0, 0, 1.54, 0]",
@@ -131,8 +155,9 @@ fn what_is_wrong_with_a_robot_file_has_its_line() {
         assert!(said.contains(why), "{to}: {said}");
         let planned = refused(folder, &["plan", "bowl", "--robot", "my.toml"]);
         assert!(planned.contains(why), "{to}: {planned}");
-        let is_of_tips = why.contains("middle between") && to.starts_with("rpy");
-        assert!(said.contains(&format!("my.toml:{line}:")) || is_of_tips, "{to}: line {line}: {said}");
+        // What is found by two keys together is told at the other one.
+        let is_told_elsewhere = to.starts_with("rpy") || to.starts_with("from");
+        assert!(said.contains(&format!("my.toml:{line}:")) || is_told_elsewhere, "{to}: line {line}: {said}");
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use darrt_primitives::contract::Contract;
 
 use super::FileRobot;
-use super::load::Loaded;
+use super::load;
 use super::shipped;
 use crate::problem_file::{PrimitiveName, ProblemFile};
 use crate::robot::{RobotError, TaskRobot as _};
@@ -38,19 +38,15 @@ pub fn with_robot(
     }
     let mut changes = Vec::new();
     problem.transit.postures = FileRobot::posture_names(&problem.robot)?;
-    let loaded = Loaded::of(&problem.robot)?;
-    if loaded.source.file.base.kind != BaseKind::Planar {
+    let (source, _) = load::source(&problem.robot)?;
+    if source.file.base.kind != BaseKind::Planar {
         let drives = |name: &PrimitiveName| contracts(name).is_some_and(|contract| contract.drives());
         let (taken, kept): (Vec<_>, Vec<_>) = problem.primitives.drain(..).partition(drives);
         problem.primitives = kept;
         problem.primitive_settings.retain(|name, _| !taken.contains(name));
         if !taken.is_empty() {
             let names: Vec<_> = taken.iter().map(PrimitiveName::as_str).collect();
-            changes.push(format!(
-                "without {}: the base of {} does not drive",
-                names.join(" and "),
-                loaded.source.file.name
-            ));
+            changes.push(format!("without {}: the base of {} does not drive", names.join(" and "), source.file.name));
         }
     }
     Ok((problem, changes))

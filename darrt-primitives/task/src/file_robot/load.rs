@@ -32,6 +32,17 @@ const LEAST_WEIGHT_M: f64 = 0.05;
 /// Share of the farthest that a joint can move the hand which it moves it in a bent posture.
 const BENT: f64 = 0.5;
 
+/// The robot file that the table `[robot]` names, and the description if that is inside too.
+pub(super) fn source(settings: &RobotSettings) -> Result<(Source, Option<&'static str>), RobotFileError> {
+    match (&settings.file, &settings.model) {
+        (Some(path), _) => Ok((Source::read(path)?, None)),
+        (None, model) => {
+            let robot = shipped::find(model.as_deref().unwrap_or_default())?;
+            Ok((Source::from_text(robot.text, robot.name)?, Some(robot.urdf)))
+        }
+    }
+}
+
 /// A robot file with its description, read and completed.
 #[derive(Debug, Clone)]
 pub(super) struct Loaded {
@@ -43,13 +54,8 @@ pub(super) struct Loaded {
 impl Loaded {
     /// The robot that the table `[robot]` names.
     pub(super) fn of(settings: &RobotSettings) -> Result<Self, RobotFileError> {
-        match (&settings.file, &settings.model) {
-            (Some(path), _) => Self::new(Source::read(path)?, None),
-            (None, model) => {
-                let robot = shipped::find(model.as_deref().unwrap_or_default())?;
-                Self::new(Source::from_text(robot.text, robot.name)?, Some(robot.urdf))
-            }
-        }
+        let (source, urdf) = source(settings)?;
+        Self::new(source, urdf)
     }
 
     /// Reads the description, unless this is its text, and completes it.

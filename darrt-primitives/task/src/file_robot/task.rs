@@ -6,7 +6,7 @@ use darrt_primitives::contract::Contract;
 use darrt_primitives::joints::Joints;
 use darrt_primitives::manipulator::{Configuration, JointVector as _, LinkGroup, Manipulator as _};
 
-use super::load::Loaded;
+use super::load::{self, Loaded};
 use super::{FileRobot, choose, shipped};
 use crate::problem_file::{ArmSide, Limits, PrimitiveName, ProblemFile, Robot as RobotSettings};
 use crate::robot::{JointValues, RobotError, RobotFacts, TaskRobot};
@@ -18,7 +18,7 @@ impl TaskRobot for FileRobot {
     }
 
     fn posture_names(settings: &RobotSettings) -> Result<Vec<String>, RobotError> {
-        Ok(Loaded::of(settings)?.source.file.postures.into_keys().collect())
+        Ok(load::source(settings)?.0.file.postures.into_keys().collect())
     }
 
     fn build(settings: &RobotSettings) -> Result<(Self, Joints), RobotError> {
