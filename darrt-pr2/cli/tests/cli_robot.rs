@@ -85,8 +85,7 @@ fn a_robot_that_is_bolted_down_plans_what_it_reaches_and_says_why_not() {
     let path = folder.path().join("first.plan.json");
     let plan = std::fs::read_to_string(&path).unwrap();
     let mut plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
-    let last = plan["steps"].as_array_mut().unwrap().last_mut().unwrap();
-    let waypoint = last["waypoints"].as_array_mut().unwrap().last_mut().unwrap();
+    let waypoint = plan["steps"][0]["waypoints"].as_array_mut().unwrap().last_mut().unwrap();
     waypoint["base"][0] = serde_json::json!(0.01);
     std::fs::write(&path, plan.to_string()).unwrap();
     let output = darrt(folder.path(), &["check", "first.plan.json"]);
@@ -99,7 +98,10 @@ fn a_rail_is_a_joint_of_the_arm() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let robot = done(folder, &["robot", "list", "--print", "table-arm"]);
-    let robot = robot.replace("kind = \"fixed\"", "kind = \"rail\"\nrail_axis = [0, 1, 0]\nrail_m = [-0.6, 0.6]");
+    let robot = robot.replace(
+        "kind = \"fixed\"",
+        "kind = \"rail\"\nrail_axis = [0, 1, 0]\nrail_m = [-0.6, 0.6]\nxyz = [0, 0, 0.02]",
+    );
     let robot = robot
         .replace("ready = [", "ready = [0, ")
         .replace("left = [", "left = [0, ")
@@ -138,7 +140,7 @@ fn what_is_wrong_with_a_robot_file_has_its_line() {
         ("joint = \"left_jaw\"", "joint = \"right_jaw\"", "follows `left_jaw`: name that one"),
         ("tips = [\"left_finger\", \"right_finger\"]", "tips = [\"right_finger\", \"left_finger\"]", "overlap by"),
         ("xyz = [0, 0, 0.15]", "xyz = [0, 0.01, 0.15]", "10.0 mm beside the middle between the pads"),
-        ("rpy = [0, -1.5707963267948966, 0]", "rpy = [0, 0, 0.7]", "the middle between the pads"),
+        ("rpy = [0, -1.5707963267948966, 0]", "rpy = [0, 0, 0.7]", "along the tool's x axis"),
         ("kind = \"planar\"", "xyz = [0, 0, -0.1]\nkind = \"planar\"", "puts `wagon` 100.0 mm into the floor"),
         ("home = \"ready\"", "home = \"redy\"", "did you mean `ready`?"),
         (

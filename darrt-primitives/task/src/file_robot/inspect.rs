@@ -32,6 +32,8 @@ const HEIGHTS: (f64, u32) = (0.1, 21);
 /// Distances from the base at which it is tried, metres.
 const DISTANCES_M: [f64; 6] = [0.3, 0.45, 0.6, 0.75, 0.9, 1.05];
 
+/// How far to the left of straight ahead, metres.
+const SIDES_M: [f64; 3] = [0.0, -0.3, 0.3];
 /// So far before the base a hand works at least, metres.
 const BEFORE_M: f64 = 0.25;
 
@@ -263,8 +265,11 @@ fn reach_down(robot: &FileRobot) -> Option<([f64; 2], f64)> {
     let (_, front) = robot.base_extent_m();
     for distance in DISTANCES_M.into_iter().filter(|distance| *distance >= front + BEFORE_M) {
         let mut reached = (0..HEIGHTS.1).map(|i| f64::from(i) * HEIGHTS.0).filter(|height| {
-            let tool = Isometry3::from_parts(Vector3::new(distance, 0.0, *height).into(), down);
-            robot.inverse(&[0.0; 3], &tool, &mut rng).is_some()
+            // In front, and a little to either side: an arm may be mounted there.
+            SIDES_M.into_iter().any(|side| {
+                let tool = Isometry3::from_parts(Vector3::new(distance, side, *height).into(), down);
+                robot.may_reach(&[0.0; 3], &tool) && robot.inverse(&[0.0; 3], &tool, &mut rng).is_some()
+            })
         });
         let Some(low) = reached.next() else { continue };
         let high = reached.last().unwrap_or(low);

@@ -11,7 +11,7 @@ use darrt_primitives::manipulator::{JointVector as _, LinkGroup, RobotLink};
 use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::bases::Ring;
-use super::chain::{Driver, Layout, Place};
+use super::chain::{ArmChain, Driver, Layout, Place};
 use super::inverse::Inverse;
 use super::opening::{Law, Opening};
 use super::travel::{Levers, corners};
@@ -19,10 +19,12 @@ use super::{FileRobot, ParallelHand, Speeds, pairs, shipped};
 use crate::problem_file::Limits;
 use crate::problem_file::Robot as RobotSettings;
 use crate::robot_file::error::Fault;
-use crate::robot_file::{Amended, RobotFileError, Source, amend};
+use crate::robot_file::{Amended, BaseKind, RobotFileError, Source, amend};
 
 /// So far a wheel may press into the floor, metres: as far as the verifier lets it.
 const FLOOR_M: f64 = 1e-3;
+/// So far above the floor is what moves over it, metres: twice the least margin, for nothing is planned nearer.
+const ABOVE_FLOOR_M: f64 = 0.01;
 /// Share of a joint's speed limit that a robot is planned with where its file does not say.
 const SPEED_SHARE: f64 = 0.5;
 /// The speed of a joint that nobody limits, radians or metres per second.
@@ -133,7 +135,7 @@ impl Loaded {
             numbers.push(link);
         }
         if is_placed {
-            self.check_floor(&links, &places)?;
+            self.check_floor(&chain, &links, &places)?;
         }
         let hand = self.hand(&layout, &bodies, tool, finger)?;
         let finger_limit = tree.variables().get(finger).map_or(JointLimit::UNLIMITED, |v| v.limit);
@@ -145,7 +147,7 @@ impl Loaded {
         let tool_levers = levers_at(&at_tool, &[Point3::origin()]);
         let weights_m = tool_levers.arm.iter().map(|lever| (BENT * lever).max(LEAST_WEIGHT_M)).collect();
         let self_pairs = pairs::pairs(&self.source, &tree, &numbers, &places, &links)?;
-        let drives = self.source.file.base.kind == crate::robot_file::BaseKind::Planar;
+        let drives = self.source.file.base.kind == BaseKind::Planar;
         let ring = Ring::new(&chain, &limits, (!drives).then_some(base));
         let speeds = self.speeds(&tree, &layout)?;
         let postures = self.postures(&limits)?;
@@ -171,8 +173,25 @@ impl Loaded {
         })
     }
 
-    /// What is rigid to the base stands on the floor, not in it.
-    fn check_floor(&self, links: &[RobotLink], places: &[Place]) -> Result<(), RobotFileError> {
+    /// What is rigid to the base stands on the floor, not in it; what a rail carries moves above it.
+    fn check_floor(&self, chain: &ArmChain, links: &[RobotLink], places: &[Place]) -> Result<(), RobotFileError> {
+        if self.source.file.base.kind == BaseKind::Rail
+            && let Some(rail) = chain.joints.first()
+        {
+            let carried = links.iter().zip(places).filter(|(_, place)| place.anchor == 1 && place.steps.is_empty());
+            for (link, place) in carried {
+                let lowest_m = lowest_m(&link.body, &(rail.before * place.offset));
+                if lowest_m < ABOVE_FLOOR_M {
+                    let why = format!(
+                        "puts `{}`, which the rail carries, {:.1} mm above the floor, must be {:.0} mm above it: raise its z",
+                        link.body.name,
+                        1e3 * lowest_m,
+                        1e3 * ABOVE_FLOOR_M
+                    );
+                    return Err(self.source.located(Fault::new("base.xyz", why)));
+                }
+            }
+        }
         let rigid = links.iter().zip(places).filter(|(link, _)| link.group == LinkGroup::Base);
         for (link, place) in rigid {
             let lowest_m = lowest_m(&link.body, &place.offset);
