@@ -74,7 +74,7 @@ fn bad_usage_is_one_message_and_exit_code_2() {
         &["plan", "plate1", "--improve"],
         &["plan", "plate1", "--improve", "time"],
         &["plan", "plate1", "--picture", "a.svg", "--no-picture"],
-        &["schema", "robot"],
+        &["schema", "planet"],
     ] {
         let output = darrt(folder.path(), arguments);
         assert_eq!(code(&output), 2, "{arguments:?}");
