@@ -118,7 +118,7 @@ fn problems_are_listed_and_printed_to_be_copied() {
 #[test]
 fn schemas_are_json() {
     let folder = tempfile::tempdir().unwrap();
-    for kind in ["problem", "plan"] {
+    for kind in ["problem", "plan", "robot"] {
         let schema: serde_json::Value =
             serde_json::from_str(&stdout(&darrt(folder.path(), &["schema", kind]))).unwrap();
         assert!(schema["$schema"].is_string() && schema["properties"]["format"].is_object(), "{kind}");
