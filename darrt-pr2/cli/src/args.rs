@@ -142,6 +142,9 @@ pub struct PlanOptions {
     /// Print where the attempts of every primitive ended, and which bodies were in the way
     #[arg(long)]
     pub stats: bool,
+    /// Where there is no plan, write down why as JSON
+    #[arg(long, value_name = "FILE")]
+    pub why: Option<PathBuf>,
     /// Print nothing but errors
     #[arg(short, long, conflicts_with = "stats")]
     pub quiet: bool,
@@ -293,6 +296,8 @@ pub enum SchemaKind {
     Problem,
     /// Plan files (JSON)
     Plan,
+    /// Why there is no plan, as `darrt plan --why` writes it (JSON)
+    Diagnosis,
 }
 
 /// A whole number from `least` to `most`, in a message that says so whatever is wrong.

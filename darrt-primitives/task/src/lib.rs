@@ -6,6 +6,7 @@
 //! | which primitives, samplers, distances and problems are there? | [`registry`], and for command lines [`program`] |
 //! | what is a problem? | [`problem_file`], [`grasp_families`], [`goal_edges`] |
 //! | is it hopeless? | [`goal_means`], [`goal_check`], `doubts` |
+//! | why has it no plan? | [`diagnosis`] |
 //! | how is it planned? | [`world`] (with the private `supports`), [`planning`] |
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
 //! | where does the time go? | [`profile`] |
@@ -14,6 +15,7 @@
 //!
 //! Nothing here names a robot.
 
+pub mod diagnosis;
 mod doubts;
 pub mod export;
 pub mod file_kind;

@@ -6,6 +6,7 @@ use darrt_core::budget::Cancel;
 use darrt_core::observe::Observer;
 use darrt_primitives::contract::Contract;
 
+use crate::diagnosis::{Diagnosis, diagnose};
 use crate::planning::{PlanRequest, PlanResult, plan};
 use crate::planning_error::PlanningError;
 use crate::problem_file::collection::Collection;
@@ -43,6 +44,12 @@ pub trait Program: Send + Sync {
         cancel: &Cancel,
         observer: &mut dyn Observer,
     ) -> Result<PlanResult, PlanningError>;
+
+    /// Why a search found no plan; see [`diagnose`].
+    ///
+    /// # Errors
+    /// As [`plan`].
+    fn diagnose(&self, request: &PlanRequest, result: &PlanResult) -> Result<Diagnosis, PlanningError>;
 }
 
 impl<M: TaskRobot> Program for Registry<M> {
@@ -71,5 +78,9 @@ impl<M: TaskRobot> Program for Registry<M> {
         observer: &mut dyn Observer,
     ) -> Result<PlanResult, PlanningError> {
         plan(self, request, cancel, observer)
+    }
+
+    fn diagnose(&self, request: &PlanRequest, result: &PlanResult) -> Result<Diagnosis, PlanningError> {
+        diagnose(self, request, result)
     }
 }

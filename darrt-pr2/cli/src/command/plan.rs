@@ -11,9 +11,11 @@ use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
 use crate::progress::Progress;
 use crate::{diagnosis, drawing, safety, statistics, steps};
+use darrt_task::diagnosis::Diagnosis;
 use darrt_task::picture::{Extent, Format, Story, Travel};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::planning::{PlanRequest, PlanResult};
+use darrt_task::planning_error::PlanningError;
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
 use darrt_task::robot::RobotFacts;
@@ -30,14 +32,14 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
     let cancel = Cancel::new();
     listen(&cancel);
     let mut progress = Progress::start(&request.problem.name, limit(&request), options.quiet);
-    let result = program
-        .plan(&request, &cancel, &mut progress)
-        .map_err(|error| Failure::input(located(&options.problem, &error.to_string())))?;
+    let result = program.plan(&request, &cancel, &mut progress).map_err(|error| refused(options, &request, &error))?;
     progress.finish();
     if options.stats {
         output.print(&statistics::report(&result.accounts))?;
     }
-    let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else { return Err(failed(&request, &result)) };
+    let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else {
+        return Err(failed(program, options, &request, &result, output)?);
+    };
     let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
     let story = Story::of_plan(plan, &robot)?;
     // First of all: a terminal that has gone away must not cost the plan.
@@ -97,10 +99,40 @@ fn located(problem: &str, message: &str) -> String {
     if message.contains(problem) { message.to_owned() } else { format!("{problem}: {message}") }
 }
 
-fn failed(request: &PlanRequest, result: &PlanResult) -> Failure {
+fn failed(
+    program: &dyn Program,
+    options: &PlanOptions,
+    request: &PlanRequest,
+    result: &PlanResult,
+    output: &mut Output,
+) -> Result<Failure, Failure> {
     let exit = if result.stop == Stop::Cancelled { Exit::Interrupted } else { Exit::NotSolved };
     let name = &request.problem.name;
-    Failure::new(exit, format!("{name}: no plan found (seed {}): {}", request.seed, diagnosis::explain(result)))
+    let diagnosis = program
+        .diagnose(request, result)
+        .map_err(|error| Failure::input(located(&options.problem, &error.to_string())))?;
+    write_why(options, &diagnosis)?;
+    if options.stats {
+        output.print(&diagnosis::details(result, &diagnosis))?;
+    }
+    let why = diagnosis::explain(result, &diagnosis);
+    Ok(Failure::new(exit, format!("{name}: no plan found (seed {}): {why}", request.seed)))
+}
+
+/// The error of a problem that cannot be planned; what keeps a plan away is written down as well.
+fn refused(options: &PlanOptions, request: &PlanRequest, error: &PlanningError) -> Failure {
+    let written = Diagnosis::of_error(&request.problem.name, error).map(|diagnosis| write_why(options, &diagnosis));
+    match written {
+        Some(Err(failure)) => failure,
+        _ => Failure::input(located(&options.problem, &error.to_string())),
+    }
+}
+
+/// Writes the diagnosis where `--why` says.
+fn write_why(options: &PlanOptions, diagnosis: &Diagnosis) -> Result<(), Failure> {
+    let Some(path) = &options.why else { return Ok(()) };
+    let text = serde_json::to_string_pretty(diagnosis).map_err(|error| Failure::input(error.to_string()))?;
+    output::write_file(path, (text + "\n").as_bytes())
 }
 
 /// Plans that are improved end with "solved" also when they were interrupted: a plan there is, but it might have been better.

@@ -1,0 +1,140 @@
+//! One cause in words: a line, or a few that lead from one to the next.
+
+use darrt_task::diagnosis::cause::{Blocker, Cause, EdgeReach, Floor, Hands, Place, Pushes, Stage};
+
+/// Bodies that are named.
+const NAMED: usize = 3;
+/// Edges that are told.
+const EDGES: usize = 4;
+
+/// The lines of a cause.
+pub(super) fn of_cause(cause: &Cause) -> Vec<String> {
+    match cause {
+        Cause::GoalOccupied { object, by, occupant, at: [x, y, z] } => {
+            vec![format!("the goal of `{object}` at ({x:.3}, {y:.3}, {z:.3}) is taken by `{by}`{occupant}")]
+        }
+        Cause::NoMeans { object, lack } => vec![format!("the goal of `{object}` cannot be reached: {lack}")],
+        Cause::MissingPrimitive { primitive, needs } => {
+            vec![format!("`{primitive}` is made of `{needs}`, which is not among the primitives")]
+        }
+        Cause::NoRoom { object, tried, inside_m, wanted_m } => vec![match inside_m {
+            Some(inside_m) => format!(
+                "goals of `{object}`: 0 of {tried} on what it may stand on and far enough from the edges: {:.0} mm inside at \
+                 best, {:.0} mm are kept",
+                inside_m * 1000.0,
+                wanted_m * 1000.0
+            ),
+            None => format!("goals of `{object}`: 0 of {tried} on what it may stand on"),
+        }],
+        Cause::NoHand { hands } => vec![of_hands(hands)],
+        Cause::NoCommonGrasp { object, at_start, tries, blockers } => vec![format!(
+            "`{object}` can be taken and set down, but by no grasp both: 0 of {at_start} grasps from the start fit one of \
+             {tries} places at the goal{}",
+            in_the_way(blockers)
+        )],
+        Cause::NoPush { pushes, edges } => of_pushes(pushes, edges),
+        Cause::CutOff { object, place, floor } => vec![of_floor(object, *place, floor)],
+        Cause::Behind { object, place, others } => vec![format!(
+            "`{object}` {}: must wait until another object is moved: {} in the way",
+            at(*place),
+            names(others)
+        )],
+        Cause::Refused { reason } => vec![format!("a plan was found, but the verifier refused it: {reason}")],
+    }
+}
+
+fn at(place: Place) -> &'static str {
+    match place {
+        Place::Start => "where it stands",
+        Place::Goal => "at its goal",
+        Place::Edge => "at an edge",
+    }
+}
+
+/// `post 1, post 2 and post 6`, those with running numbers put together.
+fn names(blockers: &[Blocker]) -> String {
+    let mut shown: Vec<_> = blockers.iter().take(NAMED).map(|blocker| format!("`{}`", blocker.body)).collect();
+    let last = shown.pop().unwrap_or_default();
+    if shown.is_empty() { last } else { format!("{} and {last}", shown.join(", ")) }
+}
+
+fn in_the_way(blockers: &[Blocker]) -> String {
+    if blockers.is_empty() { String::new() } else { format!(", {} in the way", names(blockers)) }
+}
+
+/// What becomes of the poses of the hand, at the last stage to which any of them came.
+fn of_hands(hands: &Hands) -> String {
+    let Hands { object, place, tried, blockers, bases, beyond_m, .. } = hands;
+    let subject = match place {
+        Place::Start => format!("grasps of `{object}` where it stands"),
+        Place::Goal => format!("hand poses at the goal of `{object}`"),
+        Place::Edge => format!("grasps of `{object}` at the edge"),
+    };
+    let (stage, bodies) = (hands.last_stage().unwrap_or(Stage::Hold), names(blockers));
+    let came = hands.came_to(stage);
+    let beyond = beyond_m.map(|metres| format!(" by {metres:.2} m or more"));
+    match stage {
+        Stage::Overhang => format!("`{object}` is only taken by its rim, which overhangs no edge {}", at(*place)),
+        Stage::Hold => format!("{subject}: 0 of {tried} hold it"),
+        Stage::Support => format!("{subject}: 0 of {tried} on what it may stand on"),
+        Stage::Hand => format!("{subject}: 0 of {came} free, the hand meets {bodies}"),
+        Stage::Approach => format!("{subject}: 0 of {came} with room for the straight way there, {bodies} in the way"),
+        Stage::Reach => match beyond {
+            Some(beyond) => {
+                format!("{subject}: 0 of {came} reachable, all beyond the arm{beyond} (from {bases} base poses)")
+            }
+            None => format!("{subject}: 0 of {came} reachable, from none of {bases} base poses"),
+        },
+        Stage::Stand => {
+            let nearer = beyond.map_or_else(String::new, |beyond| format!("; they are too far in{beyond}"));
+            format!(
+                "{subject}: 0 of {came} reachable from where the base can stand: {bodies} in its way ({bases} base poses){nearer}"
+            )
+        }
+        Stage::Arm => format!("{subject}: 0 of {came} free for the arm, which meets {bodies} ({bases} base poses)"),
+        Stage::Line => format!(
+            "{subject}: 0 of {came} with a straight way for hand and arm{} ({bases} base poses)",
+            in_the_way(blockers)
+        ),
+        Stage::Drive => format!("{subject}: 0 of {came} from where the base can drive"),
+    }
+}
+
+fn of_pushes(pushes: &Pushes, edges: &[EdgeReach]) -> Vec<String> {
+    let Pushes { object, tried, made, blockers, unreachable, .. } = pushes;
+    let mut ends = Vec::new();
+    ends.extend(blockers.iter().take(NAMED).map(|b| format!("`{}` stops {}", b.body, share(b.count, *tried))));
+    if *unreachable > 0 {
+        ends.push(format!("{} are out of the arm's reach", share(*unreachable, *tried)));
+    }
+    let ends = if ends.is_empty() { String::new() } else { format!(": {}", ends.join(", ")) };
+    if edges.is_empty() {
+        return vec![format!("pushes of `{object}`: {made} of {tried} possible, none to where it helps{ends}")];
+    }
+    let first =
+        format!("`{object}` must be at an edge to be taken by its rim; 0 of {tried} pushes bring it to one{ends}");
+    let of_edge = |edge: &EdgeReach| {
+        let [x, y] = edge.outward;
+        let hands = of_hands(&edge.hands);
+        let what = hands.split_once(": ").map_or(hands.as_str(), |(_, what)| what).to_owned();
+        let what = if edge.hands.good > 0 { "can be taken there, if it came there".to_owned() } else { what };
+        format!("edge of `{}` towards ({x:.1}, {y:.1}): {what}", edge.surface)
+    };
+    std::iter::once(first).chain(edges.iter().take(EDGES).map(of_edge)).collect()
+}
+
+fn share(count: u64, of: u64) -> String {
+    format!("{:.0} %", 100.0 * count as f64 / of.max(1) as f64)
+}
+
+fn of_floor(object: &str, place: Place, floor: &Floor) -> String {
+    let Floor { free_m2, cell_m, cell_rad, wanted, walls } = floor;
+    format!(
+        "the base is shut in: it has {free_m2:.2} square metres of floor, and none of {wanted} poses from which `{object}` is \
+         reached {} is there{} (cells of {:.0} cm and {:.0} degrees)",
+        at(place),
+        in_the_way(walls),
+        cell_m * 100.0,
+        cell_rad.to_degrees()
+    )
+}
