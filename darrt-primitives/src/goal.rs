@@ -202,10 +202,23 @@ impl<J> TabletopGoal<J> {
     }
 }
 
+impl<J: JointVector> TabletopGoal<J> {
+    /// Is the robot where it shall be?
+    pub fn is_robot_met<M: Manipulator<Joints = J>>(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> bool {
+        self.robot.as_ref().is_none_or(|goal| goal.is_met(m, state))
+    }
+}
+
 impl<M: Manipulator> Goal<Tabletop<M>> for TabletopGoal<M::Joints> {
     fn is_satisfied(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> bool {
         self.groups.iter().all(|alternatives| alternatives.iter().any(|goal| goal.is_met(state)))
-            && self.robot.as_ref().is_none_or(|goal| goal.is_met(m, state))
+            && self.is_robot_met(m, state)
+    }
+
+    /// The groups of which one alternative is met, and the robot.
+    fn parts_met(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> usize {
+        let groups = self.groups.iter().filter(|alternatives| alternatives.iter().any(|goal| goal.is_met(state)));
+        groups.count() + usize::from(self.robot.as_ref().is_some_and(|goal| goal.is_met(m, state)))
     }
 
     fn sample(&self, m: &Tabletop<M>, rng: &mut dyn Rng) -> Option<PartialState<Tabletop<M>>> {

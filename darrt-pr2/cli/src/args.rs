@@ -41,6 +41,8 @@ Exit codes:
   2    bad input or usage
   3    the verifier refuses the plan; with `check --strict` also a plan with warnings
   4    the output cannot be written
+  5    not solved within the budget, and the beginning of a plan is written (PROBLEM.partial.json);
+       with `check`: the plan is such a beginning, and right
   130  interrupted";
 
 /// The commands.
@@ -48,6 +50,8 @@ Exit codes:
 pub enum Command {
     /// Solve a problem: print the steps, write the plan and a picture
     Plan(PlanOptions),
+    /// Find out with which changes a problem has a plan
+    Explain(ExplainOptions),
     /// Judge a plan file with the verifier
     Check(CheckOptions),
     /// List the built-in problems, or print one to copy and edit
@@ -151,6 +155,32 @@ pub struct PlanOptions {
     /// Margins in the place of those of the problem.
     #[command(flatten)]
     pub safety: SafetyOptions,
+}
+
+const EXPLAIN_NOTES: &str = "\
+Plans the problem as it is, and then with changes: without an obstacle, with a smaller one, with wider limits, with
+another primitive, without a part of the goal, with more iterations; then without several obstacles, and with two
+changes. Every plan that is told was verified. All cores are used, and no clock: the same problem and seed have the
+same answer. Exit code 1: none of the changed problems has a plan.";
+
+/// Options of `darrt explain`.
+#[derive(Debug, Args)]
+#[command(after_help = EXPLAIN_NOTES)]
+pub struct ExplainOptions {
+    /// Name of a built-in problem, or a problem file
+    pub problem: String,
+    /// Seed of every random choice
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
+    pub seed: u64,
+    /// Iterations for each changed problem
+    #[arg(long, default_value_t = 1000, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true)]
+    pub iterations: u64,
+    /// Problems that are planned at the same time, 1 to 256 [default: one for each core]
+    #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Print the answer as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Options of `darrt check`.

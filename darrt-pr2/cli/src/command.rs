@@ -3,6 +3,7 @@
 pub(crate) mod bench;
 mod bench_table;
 pub(crate) mod check;
+pub(crate) mod explain;
 pub(crate) mod generate;
 pub(crate) mod plan;
 pub(crate) mod problems;

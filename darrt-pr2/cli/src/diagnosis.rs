@@ -10,7 +10,7 @@ use darrt_task::diagnosis::{Diagnosis, Outcome};
 use darrt_task::planning::PlanResult;
 use darrt_task::text::counted;
 
-mod words;
+pub(crate) mod words;
 
 /// Pairs of bodies that are named.
 const PAIRS: usize = 3;
@@ -26,7 +26,7 @@ pub(crate) fn explain(result: &PlanResult, diagnosis: &Diagnosis) -> String {
         format!("{} after {}, {}", result.stop, seconds(result.elapsed), counted(result.iterations, "iteration"),);
     let mut lines: Vec<_> = diagnosis.causes.iter().flat_map(words::of_cause).collect();
     let last = advice(result, diagnosis);
-    let room = LINES - 1 - last.len();
+    let room = LINES - 1 - last.len() - usize::from(result.partial.is_some());
     if lines.len() > room {
         let more = lines.len() - (room - 1);
         lines.truncate(room - 1);
@@ -100,8 +100,13 @@ fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> {
         Stop::NodeLimit => "a higher `budget.nodes` in the problem",
         _ => return Vec::new(),
     };
-    vec![match diagnosis.outcome {
-        Outcome::Hopeless => "more time or another seed will hardly help: change what is named above".to_owned(),
+    let remedies: Vec<_> = diagnosis.remedies.iter().map(words::of_relaxation).collect();
+    let would_help = format!("nothing is in the way {}", remedies.join("; or "));
+    let mut lines: Vec<_> = (!remedies.is_empty()).then_some(would_help).into_iter().collect();
+    lines.push(match diagnosis.outcome {
+        Outcome::Hopeless => {
+            "more time or another seed will hardly help; `darrt explain` looks for changes that make a plan".to_owned()
+        }
         Outcome::TooShort => format!(
             "nothing was found that keeps a plan away, and {} say nothing: {limit} will help",
             counted(result.iterations, "iteration")
@@ -110,7 +115,8 @@ fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> {
             "nothing was found that keeps a plan away: each object can be taken and brought to its goal by itself. \
              Another --seed, {limit} or a --restart may help"
         ),
-    }]
+    });
+    lines
 }
 
 #[cfg(test)]
@@ -141,6 +147,7 @@ mod tests {
             elapsed: Duration::from_millis(1500),
             times: darrt_task::profile::Times::default(),
             last_refusal: None,
+            partial: None,
         }
     }
 
@@ -150,6 +157,7 @@ mod tests {
             ended: darrt_task::diagnosis::Ended::TimeLimit,
             iterations: 40,
             causes,
+            remedies: Vec::new(),
             outcome,
             nearest_to_goal_m: Some(1.25),
         }

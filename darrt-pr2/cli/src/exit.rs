@@ -23,6 +23,9 @@ pub enum Exit {
     Refused = 3,
     /// The output cannot be written.
     CannotWrite = 4,
+    /// The budget ended before a plan was found, and the beginning of one is written; or a plan that is judged is such a
+    /// beginning, and right.
+    Partial = 5,
     /// Interrupted by the user.
     Interrupted = 130,
 }

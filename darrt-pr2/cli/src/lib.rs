@@ -73,10 +73,11 @@ pub fn run(program: &dyn Program, arguments: impl IntoIterator<Item = OsString>)
 }
 
 fn dispatch(program: &dyn Program, command: &Command) -> Result<Exit, Failure> {
-    use crate::command::{bench, check, generate, plan, problems, schema, show};
+    use crate::command::{bench, check, explain, generate, plan, problems, schema, show};
     let mut output = Output::stdout();
     match command {
         Command::Plan(options) => plan::run(program, options, &mut output),
+        Command::Explain(options) => explain::run(program, options, &mut output),
         Command::Check(options) => check::run(program, options, &mut output),
         Command::Problems(options) => problems::run(program, options, &mut output),
         Command::Show(options) => show::run(program, options, &mut output),

@@ -7,6 +7,8 @@
 //! | which poses of the hand take an object, or set it down? | `hands` |
 //! | where do pushes lead? | `pushes` |
 //! | where can the base drive? | `floor` |
+//! | what would make a problem easier? | [`relax`] |
+//! | with which changes has it a plan? | [`explain`] |
 //!
 //! All is bounded by counts and drawn from fixed seeds: the same problem has the same diagnosis. "None of 24" is what was
 //! counted; it is no proof.
@@ -24,7 +26,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::doubts::Outlook;
-use crate::planning::{PlanRequest, PlanResult};
+use crate::planning::{PlanRequest, PlanResult, prepare};
 use crate::planning_error::PlanningError;
 use crate::problem_file::Object;
 use crate::registry::Registry;
@@ -32,15 +34,21 @@ use crate::robot::TaskRobot;
 use crate::world::{self, Built};
 
 pub mod cause;
+pub mod explain;
 mod floor;
 mod hands;
 mod pushes;
+pub mod relax;
 
 use cause::{Blocker, Cause, Place, Stage};
 use hands::{Case, Look, Survey, ranked};
+use relax::Relaxation;
 
 /// Iterations that say nothing of a problem.
 const FEW: u64 = 10;
+/// Changes that are looked at, and of those that help so many are told.
+const TRIED_REMEDIES: usize = 16;
+const REMEDIES: usize = 3;
 /// Draws of the goal for each grasp that takes the object at the start.
 const GOAL_DRAWS: u64 = 8;
 
@@ -84,6 +92,9 @@ pub struct Diagnosis {
     pub iterations: u64,
     /// The causes, in the order of what must be done for each object.
     pub causes: Vec<Cause>,
+    /// Changes of the problem after which nothing is found that keeps a plan away, each by itself, the smallest first. They are
+    /// looked for as the causes are, not planned; `darrt explain` plans them.
+    pub remedies: Vec<Relaxation>,
     /// Would a longer search help?
     pub outcome: Outcome,
     /// Metres from the goal, by the planner's distance, of the nearest state; `null` if there is none.
@@ -110,6 +121,7 @@ impl Diagnosis {
             ended: Ended::Refused,
             iterations: 0,
             causes: vec![cause],
+            remedies: Vec::new(),
             outcome: Outcome::Hopeless,
             nearest_to_goal_m: None,
         })
@@ -135,6 +147,7 @@ pub fn diagnose<M: TaskRobot>(
         () if result.iterations < FEW => Outcome::TooShort,
         () => Outcome::MayBeFound,
     };
+    let remedies = if is_hopeless { remedies(registry, request, &causes) } else { Vec::new() };
     let ended = match result.stop {
         Stop::TimeLimit => Ended::TimeLimit,
         Stop::NodeLimit => Ended::NodeLimit,
@@ -146,9 +159,22 @@ pub fn diagnose<M: TaskRobot>(
         ended,
         iterations: result.iterations,
         causes,
+        remedies,
         outcome,
         nearest_to_goal_m: Some(result.nearest_to_goal).filter(|metres| metres.is_finite()),
     })
+}
+
+/// Changes after which nothing decisive is found.
+fn remedies<M: TaskRobot>(registry: &Registry<M>, request: &PlanRequest, found: &[Cause]) -> Vec<Relaxation> {
+    let helps = |relaxation: &Relaxation| {
+        let Some(problem) = relaxation.applied(&request.problem) else { return false };
+        let request = PlanRequest { problem, ..request.clone() };
+        prepare(registry, &request.problem).is_ok()
+            && causes(registry, &request).is_ok_and(|causes| !causes.iter().any(Cause::is_decisive))
+    };
+    let near = Relaxation::against(registry, &request.problem, found);
+    near.into_iter().take(TRIED_REMEDIES).filter(helps).take(REMEDIES).collect()
 }
 
 /// What keeps a plan of the problem away, as far as a bounded number of tries tells.

@@ -64,10 +64,25 @@ pub struct PlanFile {
     /// What the steps of each primitive keep to, by its name: a primitive that is not the paper's is judged by this alone.
     #[serde(deserialize_with = "unique::map")]
     pub contracts: BTreeMap<PrimitiveName, Contract>,
+    /// What is left to do, if the plan does not lead to the whole goal: the beginning of a plan that was not found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub partial: Option<Partial>,
     /// Where everything stands before the first step.
     pub start: Waypoint,
     /// The primitive actions in order.
     pub steps: Vec<Step>,
+}
+
+/// How much of the goal a plan leads to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Partial {
+    /// The objects whose goals hold at the end.
+    pub met: Vec<String>,
+    /// The objects whose goals need not hold at the end.
+    pub remains: Vec<String>,
+    /// The goal of the robot need not hold either.
+    pub robot_remains: bool,
 }
 
 /// One primitive action.

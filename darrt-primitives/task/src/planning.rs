@@ -19,6 +19,7 @@ use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
 use darrt_core::space::Place;
 use darrt_core::verify::{Refusal, Solution, Verified, Verifier};
 use darrt_primitives::detour::Detour;
+use darrt_primitives::goal::TabletopGoal;
 use darrt_primitives::surroundings::NearPair;
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
 use darrt_primitives::validity::SceneValidity;
@@ -35,6 +36,7 @@ use crate::verify::{Proof, VerifyOptions, verify_unless};
 use crate::world::{self, Built};
 
 mod course;
+mod partial;
 pub mod variants;
 
 use variants::StrategyChange;
@@ -145,6 +147,9 @@ pub struct PlanResult {
     pub times: Times,
     /// The last refusal of the verifier.
     pub last_refusal: Option<String>,
+    /// Without a plan, the beginning of one, verified: as far towards the goal as the search came with the objects. `None` if
+    /// it moved none, or was cancelled.
+    pub partial: Option<(PlanFile, Proof)>,
 }
 
 /// The judge: a plan is exported and the plan file is verified, so that what is accepted is what the user gets. What a file
@@ -193,6 +198,9 @@ pub struct Prepared<M: TaskRobot> {
     /// What makes a plan unlikely, in words; empty for most problems.
     pub doubts: Vec<String>,
     exporter: Arc<Exporter>,
+    facts: Arc<RobotFacts>,
+    /// G, of which a partial plan meets some parts.
+    goal: TabletopGoal<M::Joints>,
 }
 
 /// Builds and checks everything about a problem before the search.
@@ -238,6 +246,7 @@ fn prepare_watched<M: TaskRobot>(
     let doubts = outlook.doubts(&immovable);
     let facts = Arc::new(M::facts(&file.robot)?);
     let exporter = Arc::new(Exporter::new(file, &facts)?);
+    let (whole_goal, robot_facts) = (goal.clone(), Arc::clone(&facts));
     let verifier =
         FileVerifier { exporter: Arc::clone(&exporter), facts, cancel: cancel.clone(), watch: Arc::clone(watch) };
     let primitives = registry.build_primitives(file)?.into_iter();
@@ -249,7 +258,7 @@ fn prepare_watched<M: TaskRobot>(
         validity: Box::new(Timed { part: validity, watch: Arc::clone(watch) }),
         verifier: Box::new(verifier),
     })?;
-    Ok(Prepared { problem, near, doubts, exporter })
+    Ok(Prepared { problem, near, doubts, exporter, facts: robot_facts, goal: whole_goal })
 }
 
 /// Plans. Stopping without a plan is a result, not an error.
@@ -332,6 +341,8 @@ fn result<M: TaskRobot>(
         Ok::<_, PlanningError>((file, plan_seconds(cost, m, plan)))
     });
     let found = found.transpose()?;
+    let whole = || (request.seed, facts.clone());
+    let partial = outcome.part.as_ref().and_then(|plan| partial::verified(prepared, plan, whole()));
     let judged = outcome.solution.map(Solution::into_parts).and_then(|(plan, verified)| {
         let judged = verified.evidence?.downcast().ok()?;
         Some((plan, Arc::<Judged>::unwrap_or_clone(judged)))
@@ -358,6 +369,7 @@ fn result<M: TaskRobot>(
         elapsed: outcome.elapsed,
         times: Times::default(),
         last_refusal: outcome.last_refusal,
+        partial,
     })
 }
 

@@ -142,6 +142,11 @@ impl ProblemFile {
         self.obstacles.iter().find(|obstacle| obstacle.name == name)
     }
 
+    /// Whether there is a goal for the object of this name.
+    pub fn has_goal(&self, object: &str) -> bool {
+        self.goal.objects.iter().any(|goal| goal.object == object)
+    }
+
     /// Whether the planner may use the primitive of this name.
     pub fn allows(&self, primitive: &PrimitiveName) -> bool {
         self.primitives.contains(primitive)

@@ -6,6 +6,7 @@ use darrt_core::budget::Cancel;
 use darrt_core::observe::Observer;
 use darrt_primitives::contract::Contract;
 
+use crate::diagnosis::explain::{ExplainRequest, Explanation, explain};
 use crate::diagnosis::{Diagnosis, diagnose};
 use crate::planning::{PlanRequest, PlanResult, plan};
 use crate::planning_error::PlanningError;
@@ -50,6 +51,12 @@ pub trait Program: Send + Sync {
     /// # Errors
     /// As [`plan`].
     fn diagnose(&self, request: &PlanRequest, result: &PlanResult) -> Result<Diagnosis, PlanningError>;
+
+    /// With which changes a problem has a plan; see [`explain`].
+    ///
+    /// # Errors
+    /// As [`explain`].
+    fn explain(&self, request: &ExplainRequest, cancel: &Cancel) -> Result<Explanation, PlanningError>;
 }
 
 impl<M: TaskRobot> Program for Registry<M> {
@@ -82,5 +89,9 @@ impl<M: TaskRobot> Program for Registry<M> {
 
     fn diagnose(&self, request: &PlanRequest, result: &PlanResult) -> Result<Diagnosis, PlanningError> {
         diagnose(self, request, result)
+    }
+
+    fn explain(&self, request: &ExplainRequest, cancel: &Cancel) -> Result<Explanation, PlanningError> {
+        explain(self, request, cancel)
     }
 }

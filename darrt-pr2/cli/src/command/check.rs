@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::args::CheckOptions;
+use crate::diagnosis;
 use crate::exit::{Exit, Failure};
 use crate::output::Output;
 use crate::steps;
@@ -42,9 +43,15 @@ pub(crate) fn run(program: &dyn Program, options: &CheckOptions, output: &mut Ou
     }
     let is_refused = options.strict && !proof.warnings.is_empty();
     if options.json {
-        output.print(&json(&proof, !is_refused)?)?;
+        output.print(&json(&plan, &proof, !is_refused)?)?;
     } else if !options.quiet {
-        let verdict = if is_refused { "right, but not accepted" } else { "accepted" };
+        let verdict = match &plan.partial {
+            _ if is_refused => "right, but not accepted".to_owned(),
+            None => "accepted".to_owned(),
+            partial => {
+                format!("right, but only the beginning of a plan: {}", diagnosis::words::of_parts(partial.as_ref()))
+            }
+        };
         let warnings = proof.warnings.iter().map(|warning| format!("\nwarning:  {warning}"));
         output.print(&format!("{name}: {verdict}\n{}{}", words(&proof), warnings.collect::<String>()))?;
         notices(&plan, output)?;
@@ -53,11 +60,11 @@ pub(crate) fn run(program: &dyn Program, options: &CheckOptions, output: &mut Ou
         let count = counted(proof.warnings.len() as u64, "warning");
         return Err(refuse(format!("{count}, and with --strict there may be none")));
     }
-    Ok(Exit::Solved)
+    Ok(if plan.partial.is_some() { Exit::Partial } else { Exit::Solved })
 }
 
 /// What the verifier has seen, for programs: lengths in metres, the numbers of a warning in metres or degrees.
-fn json(proof: &Proof, is_accepted: bool) -> Result<String, Failure> {
+fn json(plan: &PlanFile, proof: &Proof, is_accepted: bool) -> Result<String, Failure> {
     let clearance = |smallest: &SmallestClearance| {
         let SmallestClearance { distance_m, bodies: (a, b), step, time } = smallest;
         serde_json::json!({ "distance_m": distance_m, "bodies": [a, b], "step": step, "time": time })
@@ -69,7 +76,8 @@ fn json(proof: &Proof, is_accepted: bool) -> Result<String, Failure> {
             "message": message })
     });
     let value = serde_json::json!({
-        "accepted": is_accepted,
+        "accepted": is_accepted && plan.partial.is_none(),
+        "partial": plan.partial,
         "steps": proof.steps,
         "waypoints": proof.waypoints,
         "states": proof.states,

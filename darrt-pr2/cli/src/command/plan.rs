@@ -38,7 +38,7 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
         output.print(&statistics::report(&result.accounts))?;
     }
     let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else {
-        return Err(failed(program, options, &request, &result, output)?);
+        return Err(failed(program, options, (&request, &result), &files, output)?);
     };
     let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
     let story = Story::of_plan(plan, &robot)?;
@@ -99,14 +99,14 @@ fn located(problem: &str, message: &str) -> String {
     if message.contains(problem) { message.to_owned() } else { format!("{problem}: {message}") }
 }
 
+/// Tells why there is no plan, and writes the beginning of one if there is any.
 fn failed(
     program: &dyn Program,
     options: &PlanOptions,
-    request: &PlanRequest,
-    result: &PlanResult,
+    (request, result): (&PlanRequest, &PlanResult),
+    files: &Files,
     output: &mut Output,
 ) -> Result<Failure, Failure> {
-    let exit = if result.stop == Stop::Cancelled { Exit::Interrupted } else { Exit::NotSolved };
     let name = &request.problem.name;
     let diagnosis = program
         .diagnose(request, result)
@@ -115,7 +115,13 @@ fn failed(
     if options.stats {
         output.print(&diagnosis::details(result, &diagnosis))?;
     }
-    let why = diagnosis::explain(result, &diagnosis);
+    let mut why = diagnosis::explain(result, &diagnosis);
+    let mut exit = if result.stop == Stop::Cancelled { Exit::Interrupted } else { Exit::NotSolved };
+    if let Some((plan, _)) = &result.partial {
+        let path = files.write_partial(program, plan)?;
+        why = format!("{why}\n  {}", diagnosis::words::of_partial(plan, &path));
+        exit = Exit::Partial;
+    }
     Ok(Failure::new(exit, format!("{name}: no plan found (seed {}): {why}", request.seed)))
 }
 
@@ -221,6 +227,17 @@ impl Files {
         }
     }
 
+    /// Writes the beginning of a plan beside where the plan would be, and its picture; says where.
+    fn write_partial(&self, program: &dyn Program, plan: &PlanFile) -> Result<PathBuf, Failure> {
+        let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
+        let path = of_partial(&self.plan);
+        let picture = self.picture.as_ref().map(|(picture, format)| (of_partial(picture), *format));
+        plan.write(&path)?;
+        let files = Self { plan: path.clone(), picture };
+        files.draw(plan, &Story::of_plan(plan, &robot)?, &robot)?;
+        Ok(path)
+    }
+
     fn words(&self) -> String {
         let plan = format!("plan:     {}", self.plan.display());
         match &self.picture {
@@ -228,6 +245,20 @@ impl Files {
             None => plan,
         }
     }
+}
+
+/// Where the beginning of a plan goes that would be written to `path`: `a/b.plan.json` and `a/b.json` have
+/// `a/b.partial.json`. What an earlier run wrote there stays.
+fn of_partial(path: &Path) -> PathBuf {
+    let bare = path.with_extension("");
+    let bare = if bare.extension().is_some_and(|ending| ending == "plan") { bare.with_extension("") } else { bare };
+    let mut name = bare.into_os_string();
+    name.push(".partial");
+    if let Some(ending) = path.extension() {
+        name.push(".");
+        name.push(ending);
+    }
+    PathBuf::from(name)
 }
 
 /// The picture that belongs to a plan file: `a/b.plan.json` and `a/b.json` have `a/b.html`.
@@ -252,6 +283,18 @@ mod tests {
             ("v1.2.json", "v1.2.html"),
         ] {
             assert_eq!(beside(Path::new(plan)), Path::new(picture));
+        }
+    }
+
+    #[test]
+    fn the_beginning_of_a_plan_lies_beside_it() {
+        for (plan, partial) in [
+            ("plate3.plan.json", "plate3.partial.json"),
+            ("a/p.json", "a/p.partial.json"),
+            ("a.b/p", "a.b/p.partial"),
+            ("p.html", "p.partial.html"),
+        ] {
+            assert_eq!(of_partial(Path::new(plan)), Path::new(partial));
         }
     }
 

@@ -1,6 +1,12 @@
 //! One cause in words: a line, or a few that lead from one to the next.
 
+use std::path::Path;
+
 use darrt_task::diagnosis::cause::{Blocker, Cause, EdgeReach, Floor, Hands, Place, Pushes, Stage};
+use darrt_task::diagnosis::relax::Relaxation;
+use darrt_task::plan_file::{Partial, PlanFile};
+use darrt_task::problem_file::GraspFamily;
+use darrt_task::text::counted;
 
 /// Bodies that are named.
 const NAMED: usize = 3;
@@ -8,7 +14,7 @@ const NAMED: usize = 3;
 const EDGES: usize = 4;
 
 /// The lines of a cause.
-pub(super) fn of_cause(cause: &Cause) -> Vec<String> {
+pub(crate) fn of_cause(cause: &Cause) -> Vec<String> {
     match cause {
         Cause::GoalOccupied { object, by, occupant, at: [x, y, z] } => {
             vec![format!("the goal of `{object}` at ({x:.3}, {y:.3}, {z:.3}) is taken by `{by}`{occupant}")]
@@ -137,4 +143,59 @@ fn of_floor(object: &str, place: Place, floor: &Floor) -> String {
         cell_m * 100.0,
         cell_rad.to_degrees()
     )
+}
+
+/// What the beginning of a plan leads to, and what remains.
+pub(crate) fn of_partial(plan: &PlanFile, path: &Path) -> String {
+    let steps = counted(plan.steps.len() as u64, "step");
+    format!("its beginning is in {}: {steps}, {}", path.display(), of_parts(plan.partial.as_ref()))
+}
+
+/// Which parts of the goal hold, and which remain.
+pub(crate) fn of_parts(partial: Option<&Partial>) -> String {
+    let Some(Partial { met, remains, robot_remains }) = partial else { return "the whole goal holds".to_owned() };
+    let met = if met.is_empty() {
+        "no part of the goal holds".to_owned()
+    } else {
+        format!("the goal of {} holds", list(met))
+    };
+    let robot = robot_remains.then(|| "the robot's".to_owned());
+    let objects = (!remains.is_empty()).then(|| format!("that of {}", list(remains)));
+    let left: Vec<_> = objects.into_iter().chain(robot).collect();
+    format!("{met}, {} remains", left.join(" and "))
+}
+
+/// A change in words.
+pub(crate) fn of_relaxation(relaxation: &Relaxation) -> String {
+    match relaxation {
+        Relaxation::HardLimits => "with `robot.limits = \"hard\"`".to_owned(),
+        Relaxation::Lift { to_m } => format!("with `robot.torso_m = {to_m:.2}`"),
+        Relaxation::Allow { primitive } => format!("with `{primitive}` among the primitives"),
+        Relaxation::Grasp { object, family } => format!("with {} grasps of `{object}`", family_name(*family)),
+        Relaxation::Shorter { key, least_m } => format!("with {least_m} m as the least of `{key}`"),
+        Relaxation::LessMargin { to_m } => format!("with `safety.least_margin_m = {to_m}`"),
+        Relaxation::Tolerance { object, to_m } => format!("with `tolerance_m = {to_m}` at the goal of `{object}`"),
+        Relaxation::WiderBounds { by_m } => format!("with `bounds` wider by {by_m} m"),
+        Relaxation::Shrink { obstacle, share } => format!("with `{obstacle}` at {:.0} % of its size", share * 100.0),
+        Relaxation::Without { obstacles } => format!("without {}", list(obstacles)),
+        Relaxation::WithoutObject { object } => format!("without `{object}`"),
+        Relaxation::WithoutGoal { object: Some(object) } => format!("without the goal of `{object}`"),
+        Relaxation::WithoutGoal { object: None } => "without the goal of the robot".to_owned(),
+        Relaxation::MoreTime { iterations } => format!("with {iterations} iterations"),
+    }
+}
+
+fn family_name(family: GraspFamily) -> &'static str {
+    match family {
+        GraspFamily::Rim => "rim",
+        GraspFamily::Overhead => "overhead",
+        GraspFamily::Side => "side",
+    }
+}
+
+/// `a`, `b` and `c`.
+fn list(names: &[String]) -> String {
+    let mut shown: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+    let last = shown.pop().unwrap_or_default();
+    if shown.is_empty() { last } else { format!("{} and {last}", shown.join(", ")) }
 }

@@ -11,7 +11,7 @@ use darrt_primitives::manipulator::{Configuration, Manipulator};
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
 
 use super::cause::Floor;
-use super::hands::{culprit, ranked};
+use super::hands::{BOUNDS, culprit, ranked};
 
 /// Width of a cell, metres.
 const CELL_M: f64 = 0.05;
@@ -75,7 +75,7 @@ pub(super) fn drive_to_any<M: Manipulator>(
             }
             let q = Configuration { base: place(next), arm: start.robot.arm };
             if !m.robot().base().contains(&q.base) {
-                *walls.entry("the bounds of the base".to_owned()).or_default() += 1;
+                *walls.entry(BOUNDS.to_owned()).or_default() += 1;
             } else if let Err(blame) = m.surroundings().check_base(m.manipulator(), &q) {
                 *walls.entry(culprit(m, ObjectId::new(usize::MAX), &blame)).or_default() += 1;
             } else {

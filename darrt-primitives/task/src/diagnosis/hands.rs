@@ -41,6 +41,8 @@ const ASKED: usize = 4;
 const FARTHEST_M: f64 = 2.0;
 const STRIDE_M: f64 = 0.1;
 const WITHIN_M: f64 = 0.01;
+/// What stands for a body where the base is out of its bounds.
+pub(super) const BOUNDS: &str = "the bounds of the base";
 /// Bodies that are named at most.
 const NAMED: usize = 8;
 
@@ -466,7 +468,7 @@ impl<M: Manipulator> Ends<'_, '_, M> {
     /// May the base stand there?
     fn is_free(&self, q: &Configuration<M::Joints>) -> Result<(), End> {
         if !self.m().robot().base().contains(&q.base) {
-            return Err(End { stage: Stage::Stand, body: Some("the bounds of the base".to_owned()) });
+            return Err(End { stage: Stage::Stand, body: Some(BOUNDS.to_owned()) });
         }
         let found = self.m().surroundings().check_base(self.m().manipulator(), q);
         found.map_err(|blame| self.blamed(Stage::Stand, Some(blame)))

@@ -141,7 +141,14 @@ impl<'a> Judge<'a> {
             here = self.step(site, step, last, here)?;
             last = step.waypoints.last().unwrap_or(last);
         }
-        goal::check(&self.plan.problem, &self.world, (&self.robot, self.facts), &here, &self.modes)?;
+        goal::check(
+            &self.plan.problem,
+            self.plan.partial.as_ref(),
+            &self.world,
+            (&self.robot, self.facts),
+            &here,
+            &self.modes,
+        )?;
         let warnings = self.warnings(&here);
         let [robot, held, object, itself, near] = self.stage.smallest;
         let unintended = [robot, held, object, itself].into_iter().flatten();
