@@ -8,11 +8,12 @@ use darrt_task::diagnosis::cause::{Cause, Hands, Occupant, Place, Stage};
 use darrt_task::diagnosis::explain::{ExplainRequest, explain};
 use darrt_task::diagnosis::relax::Relaxation;
 use darrt_task::diagnosis::{Diagnosis, Outcome, causes, diagnose};
-use darrt_task::plan_file::{Partial, PlanFile};
+use darrt_task::plan_file::{Partial, PlanFile, Step};
 use darrt_task::planning::{PlanRequest, plan};
 use darrt_task::problem_file::{PrimitiveName, ProblemFile};
 use darrt_task::registry::Registry;
-use darrt_task::verify::{VerifyOptions, verify_for};
+use darrt_task::verify::{RefusalKind, VerifyOptions, verify_for};
+use nalgebra::Isometry3;
 
 const ALL: &str = r#"["Arm-Transit","Straight-Line-Arm-Transit","Arm-Rigid-Transfer","Base-Transit","Base-Rigid-Transfer","Pick","Place","Push"]"#;
 
@@ -445,4 +446,44 @@ fn explained_changes_are_solved_and_as_few_as_can_be() {
     assert_eq!(found, of(1));
     let [Relaxation::Without { obstacles }] = found[0].0.as_slice() else { panic!("{found:?}") };
     assert!((1..8).contains(&obstacles.len()), "{obstacles:?}");
+}
+
+/// The hand's direction from the mug wherever it takes it, or lets go of it, in degrees.
+fn sides(file: &PlanFile) -> Vec<f64> {
+    let side = |step: &Step| {
+        let hold = step.holds.as_ref()?;
+        let waypoint = step.waypoints.first()?;
+        let object = Isometry3::from(*waypoint.objects.get("mug")?);
+        let hand = object * Isometry3::from(hold.tool_from_object).inverse();
+        let beside = hand.translation.vector - object.translation.vector;
+        Some(beside.y.atan2(beside.x).to_degrees())
+    };
+    file.steps.iter().filter(|step| step.primitive == PrimitiveName::PICK).filter_map(side).collect()
+}
+
+#[test]
+fn a_person_says_from_which_side_and_where_from() {
+    let mut case = Case { primitives: ALL.replace(",\"Push\"", ""), iterations: 3000, ..Case::default() };
+    let solved = |case: &Case| {
+        let request = PlanRequest { iterations: Some(case.iterations), ..PlanRequest::new(case.problem(), 0) };
+        plan(&Registry::<Pr2>::new(), &request, &Cancel::new(), &mut Silent).unwrap()
+    };
+    case.goals += "[[steer]]\nobject = \"mug\"\nprimitive = \"Pick\"\nfrom_deg = [60, 120]\n";
+    let file = solved(&case).plan.unwrap();
+    assert!(sides(&file).iter().all(|side| (60.0..=120.0).contains(side)), "{:?}", sides(&file));
+    // The verifier looks by itself: the same plan breaks the opposite rule.
+    let mut other = file.clone();
+    other.problem.steers[0].from_deg = Some([-120.0, -60.0]);
+    let refusal = verify_for::<Pr2>(&other, &VerifyOptions::default()).unwrap_err();
+    assert_eq!(refusal.kind, RefusalKind::Steer, "{refusal}");
+
+    case.goals = goal("mug", "table", [-0.2, -0.3]) + "[[steer]]\nnot_base = { min = [-5, -5], max = [0, 5] }\n";
+    let file = solved(&case).plan.unwrap();
+    let works = |step: &&Step| ["Pick", "Place"].contains(&step.primitive.as_str());
+    assert!(file.steps.iter().filter(works).all(|step| step.waypoints[0].base[0] > 0.0));
+
+    case.goals = goal("mug", "table", [-0.2, -0.3]) + "[[steer]]\nforbid = true\nprimitive = \"Pick\"\n";
+    case.iterations = 100;
+    let diagnosis = case.diagnosis();
+    assert!(diagnosis.causes.iter().any(|cause| matches!(cause, Cause::Steered { .. })), "{diagnosis:#?}");
 }

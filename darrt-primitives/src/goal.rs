@@ -203,6 +203,11 @@ impl<J> TabletopGoal<J> {
 }
 
 impl<J: JointVector> TabletopGoal<J> {
+    /// The goal for the robot alone, if there is one.
+    pub fn of_robot(&self) -> Option<Self> {
+        self.robot.is_some().then(|| Self { groups: Vec::new(), robot: self.robot.clone() })
+    }
+
     /// Is the robot where it shall be?
     pub fn is_robot_met<M: Manipulator<Joints = J>>(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> bool {
         self.robot.as_ref().is_none_or(|goal| goal.is_met(m, state))

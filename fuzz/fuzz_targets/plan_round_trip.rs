@@ -105,6 +105,7 @@ impl PlanSketch {
                 nodes: self.counts[2],
             },
             contracts,
+            partial: None,
             start: self.start.waypoint(),
             steps: self.steps.iter().map(StepSketch::step).collect(),
         }

@@ -146,6 +146,12 @@ pub struct PlanOptions {
     /// Print where the attempts of every primitive ended, and which bodies were in the way
     #[arg(long)]
     pub stats: bool,
+    /// Begin with this plan, for the same problem or for one much like it: its first steps that are still right are kept
+    #[arg(long, value_name = "PLAN")]
+    pub from: Option<PathBuf>,
+    /// Keep so many steps of that plan, not as many as can be [`--at` is the same: plan on from behind this step]
+    #[arg(long, value_name = "STEPS", requires = "from", visible_alias = "at", value_parser = any_count, allow_hyphen_values = true)]
+    pub keep: Option<u64>,
     /// Where there is no plan, write down why as JSON
     #[arg(long, value_name = "FILE")]
     pub why: Option<PathBuf>,

@@ -100,6 +100,9 @@ fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> {
         Stop::NodeLimit => "a higher `budget.nodes` in the problem",
         _ => return Vec::new(),
     };
+    let progress = diagnosis.nearest_to_goal_m.map_or_else(String::new, |metres| {
+        format!(" (nearest so far: {metres:.2} m to move, in {})", counted(result.nodes as u64, "state"))
+    });
     let remedies: Vec<_> = diagnosis.remedies.iter().map(words::of_relaxation).collect();
     let would_help = format!("nothing is in the way {}", remedies.join("; or "));
     let mut lines: Vec<_> = (!remedies.is_empty()).then_some(would_help).into_iter().collect();
@@ -108,11 +111,11 @@ fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> {
             "more time or another seed will hardly help; `darrt explain` looks for changes that make a plan".to_owned()
         }
         Outcome::TooShort => format!(
-            "nothing was found that keeps a plan away, and {} say nothing: {limit} will help",
+            "nothing was found that keeps a plan away, and {} say nothing{progress}: {limit} will help",
             counted(result.iterations, "iteration")
         ),
         Outcome::MayBeFound => format!(
-            "nothing was found that keeps a plan away: each object can be taken and brought to its goal by itself. \
+            "nothing was found that keeps a plan away: each object can be taken and brought to its goal by itself{progress}. \
              Another --seed, {limit} or a --restart may help"
         ),
     });

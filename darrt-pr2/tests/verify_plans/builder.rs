@@ -209,6 +209,7 @@ impl Builder {
                 ..PlannerFacts::default()
             },
             contracts: STANDARD.iter().map(|(id, contract)| (PrimitiveName::new(id.name()), *contract)).collect(),
+            partial: None,
             start: self.start.clone(),
             steps: self.steps.clone(),
         }

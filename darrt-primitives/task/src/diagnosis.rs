@@ -16,17 +16,20 @@
 use std::collections::BTreeMap;
 
 use darrt_core::budget::Stop;
+use darrt_core::goal::Goal as _;
+use darrt_core::random::{Purpose, stream};
 use darrt_core::state::ObjectId;
 use darrt_primitives::contract::{Contract, HandUse};
 use darrt_primitives::goal::Grip;
 use darrt_primitives::manipulator::Manipulator;
+use darrt_primitives::mode::Contacts;
 use darrt_primitives::primitive::{PICK, PLACE, PUSH};
 use darrt_primitives::tabletop::TabletopState;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::doubts::Outlook;
-use crate::planning::{PlanRequest, PlanResult, prepare};
+use crate::planning::{PlanRequest, PlanResult, STEER, prepare};
 use crate::planning_error::PlanningError;
 use crate::problem_file::Object;
 use crate::registry::Registry;
@@ -41,7 +44,7 @@ mod pushes;
 pub mod relax;
 
 use cause::{Blocker, Cause, Place, Stage};
-use hands::{Case, Look, Survey, ranked};
+use hands::{Case, Look, Survey, culprit, ranked};
 use relax::Relaxation;
 
 /// Iterations that say nothing of a problem.
@@ -49,6 +52,8 @@ const FEW: u64 = 10;
 /// Changes that are looked at, and of those that help so many are told.
 const TRIED_REMEDIES: usize = 16;
 const REMEDIES: usize = 3;
+/// Draws of the goal of the robot.
+const ROBOT_DRAWS: u64 = 32;
 /// Draws of the goal for each grasp that takes the object at the start.
 const GOAL_DRAWS: u64 = 8;
 
@@ -137,10 +142,15 @@ pub fn diagnose<M: TaskRobot>(
     request: &PlanRequest,
     result: &PlanResult,
 ) -> Result<Diagnosis, PlanningError> {
-    let causes = match &result.last_refusal {
+    let mut causes = match &result.last_refusal {
         Some(reason) => vec![Cause::Refused { reason: reason.clone() }],
         None => causes(registry, request)?,
     };
+    let stopped = result.accounts.blocks.iter().filter(|((_, by), _)| by == STEER);
+    let steps = ranked(stopped.map(|((step, _), count)| (step.clone(), *count)).collect());
+    if !steps.is_empty() {
+        causes.push(Cause::Steered { steps });
+    }
     let is_hopeless = causes.iter().any(Cause::is_decisive);
     let outcome = match () {
         () if is_hopeless => Outcome::Hopeless,
@@ -200,7 +210,28 @@ impl<'a, M: Manipulator> Inquest<'a, M> {
     fn causes(&self) -> Vec<Cause> {
         let immovable = self.outlook.immovable();
         let wanted = self.outlook.objects().filter(|(id, _)| self.outlook.must_move(*id));
-        wanted.flat_map(|(id, object)| self.of_object(id, object, &immovable)).collect()
+        wanted.flat_map(|(id, object)| self.of_object(id, object, &immovable)).chain(self.of_robot()).collect()
+    }
+
+    /// What keeps the robot from its own goal: it meets something fixed wherever it would be, or is nowhere.
+    fn of_robot(&self) -> Option<Cause> {
+        let Look { m, start, goal } = self.look;
+        let (robot, mut tried) = (m.manipulator(), 0);
+        let mut blockers = BTreeMap::<String, u64>::new();
+        let alone = goal.of_robot()?;
+        for draw in 0..ROBOT_DRAWS {
+            let Some(target) = alone.sample(m, &mut stream(0, 6, draw, Purpose::Attempt)) else { continue };
+            tried += 1;
+            let q = target.robot_overlay(m, &start.robot);
+            let aside = self.outlook.alone(ObjectId::new(usize::MAX), &self.outlook.immovable());
+            let state = TabletopState::<M> { robot: q, ..aside };
+            let found = m.surroundings().check_base(robot, &q);
+            match found.and_then(|()| m.surroundings().check(robot, &state, &Contacts::default())) {
+                Ok(()) => return None,
+                Err(blame) => *blockers.entry(culprit(m, ObjectId::new(usize::MAX), &blame)).or_default() += 1,
+            }
+        }
+        Some(Cause::NoRobotGoal { tried, blockers: ranked(blockers) })
     }
 
     /// What keeps one object from its goal.

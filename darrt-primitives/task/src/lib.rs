@@ -8,6 +8,7 @@
 //! | is it hopeless? | [`goal_means`], [`goal_check`], `doubts` |
 //! | why has it no plan? | [`diagnosis`] |
 //! | how is it planned? | [`world`] (with the private `supports`), [`planning`] |
+//! | how does an old plan help? | [`replan`](mod@replan) |
 //! | what is a plan, and is it right? | [`export`], [`plan_file`], [`verify`](mod@verify) |
 //! | where does the time go? | [`profile`] |
 //! | how are files read, written and described? | [`text_file`], [`text`], [`schema`] |
@@ -32,6 +33,7 @@ pub mod problem_file;
 pub mod profile;
 pub mod program;
 pub mod registry;
+pub mod replan;
 pub mod robot;
 pub mod schema;
 mod supports;

@@ -1,32 +1,37 @@
 //! Planning a problem file from end to end: build, search, verify, export.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
 use darrt_core::budget::{Budget, Cancel, Stop};
 use darrt_core::cost::{ExecutionCost, plan_seconds};
+use darrt_core::domain::Domain as _;
 use darrt_core::extend::ExtendOptions;
 use darrt_core::goal::Goal;
 use darrt_core::improve::{ImproveOptions, Improvement};
 use darrt_core::observe::accounts::Accounts;
 use darrt_core::observe::{Event, Observer};
+use darrt_core::partial::PartialState;
 use darrt_core::plan::Plan;
 use darrt_core::problem::{Parts, Problem};
-use darrt_core::sample::{GoalBiased, Placed};
+use darrt_core::sample::{GoalBiased, Guided, Placed};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
-use darrt_core::space::Place;
+use darrt_core::space::{ComponentSpace as _, Place};
+use darrt_core::state::ObjectId;
 use darrt_core::verify::{Refusal, Solution, Verified, Verifier};
 use darrt_primitives::detour::Detour;
 use darrt_primitives::goal::TabletopGoal;
 use darrt_primitives::surroundings::NearPair;
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
 use darrt_primitives::validity::SceneValidity;
+use nalgebra::Isometry3;
 
 use crate::doubts::Outlook;
 use crate::export::{Exporter, Written};
-use crate::plan_file::{PlanFile, PlannerFacts, SearchName};
+use crate::plan_file::{PlanFile, PlannerFacts, Pose, SearchName};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{CostName, DistanceName, ProblemFile, SamplerName};
 use crate::profile::{Profile, Timed, Times, Watched};
@@ -37,8 +42,11 @@ use crate::world::{self, Built};
 
 mod course;
 mod partial;
+mod steered;
 pub mod variants;
 
+pub(crate) use steered::STEER;
+use steered::Steered;
 use variants::StrategyChange;
 
 /// Bound on the travel of any point of the robot between two nodes of the tree, metres; the hand moves about a third.
@@ -47,6 +55,8 @@ const NODE_SPACING: f64 = 1.0;
 const SHORTENING: usize = 200;
 /// See [`Strategy::try_penalty_m`].
 const TRY_PENALTY: f64 = 0.1;
+/// Share of the samples that are places of an earlier plan, where there is one.
+const HINTS: f64 = 0.5;
 /// Share of the samples from a goal for several objects that name only some of them.
 const GOAL_PARTS: f64 = 0.5;
 /// Iterations of an attempt where several are needed and nobody says how long one is; as in the built-in problems.
@@ -87,6 +97,8 @@ pub struct PlanRequest {
     pub cost: CostName,
     /// Changes of the search strategy, after all else.
     pub changes: Vec<StrategyChange>,
+    /// Places of objects by name that are proposed to the search, as an earlier plan had them.
+    pub hints: Vec<BTreeMap<String, Pose>>,
 }
 
 impl PlanRequest {
@@ -107,6 +119,7 @@ impl PlanRequest {
             bases_from_reachability: false,
             cost: CostName::default(),
             changes: Vec::new(),
+            hints: Vec::new(),
         }
     }
 }
@@ -203,6 +216,13 @@ pub struct Prepared<M: TaskRobot> {
     goal: TabletopGoal<M::Joints>,
 }
 
+impl<M: TaskRobot> Prepared<M> {
+    /// Writes its plans.
+    pub fn exporter(&self) -> &Exporter {
+        &self.exporter
+    }
+}
+
 /// Builds and checks everything about a problem before the search.
 ///
 /// # Errors
@@ -249,7 +269,12 @@ fn prepare_watched<M: TaskRobot>(
     let (whole_goal, robot_facts) = (goal.clone(), Arc::clone(&facts));
     let verifier =
         FileVerifier { exporter: Arc::clone(&exporter), facts, cancel: cancel.clone(), watch: Arc::clone(watch) };
-    let primitives = registry.build_primitives(file)?.into_iter();
+    let rules: Arc<[_]> = file.steers.clone().into();
+    let steered = |part| match rules.is_empty() {
+        true => part,
+        false => Box::new(Steered { part, rules: Arc::clone(&rules) }) as _,
+    };
+    let primitives = registry.build_primitives(file)?.into_iter().map(steered);
     let problem = Problem::new(Parts {
         domain: world,
         start,
@@ -279,6 +304,10 @@ pub fn plan<M: TaskRobot>(
         strategy.improve = None;
     }
     request.changes.iter().for_each(|change| change.apply(&mut strategy));
+    if !request.hints.is_empty() {
+        let targets = hinted(prepared.problem.domain(), &request.hints);
+        strategy.sampler = Box::new(Guided::new(strategy.sampler, targets, HINTS)?);
+    }
     strategy.reroute = strategy.reroute.map(|part| Box::new(Timed { part, watch: Arc::clone(&watch) }) as _);
     let budget = &request.problem.budget;
     let needs_restarts = request.improve.is_some() || request.algorithms.len() > 1;
@@ -315,6 +344,19 @@ pub fn plan<M: TaskRobot>(
     let plans = if request.improve.is_some() { observer.plans } else { u64::from(is_solved) };
     let times = watch.times(begun, outcome.elapsed, is_solved);
     Ok(PlanResult { plans, times, ..result(&prepared, request, cost, outcome)? })
+}
+
+/// The places that are proposed, as targets: those of objects that there are, and that may be there.
+fn hinted<M: TaskRobot>(m: &Tabletop<M>, hints: &[BTreeMap<String, Pose>]) -> Vec<PartialState<Tabletop<M>>> {
+    let target = |hint: &BTreeMap<String, Pose>| {
+        let named = m.movables().iter().enumerate().filter_map(|(index, movable)| {
+            let pose = Isometry3::from(*hint.get(&*movable.body.name)?);
+            Some((ObjectId::new(index), pose))
+                .filter(|_| m.objects().get(index).is_some_and(|space| space.contains(&pose)))
+        });
+        named.fold(PartialState::anywhere(m), |target, (id, pose)| target.with_object(id, pose))
+    };
+    hints.iter().map(target).filter(|target| target.objects().next().is_some()).collect()
 }
 
 fn result<M: TaskRobot>(

@@ -70,6 +70,14 @@ pub enum PlanningError {
         /// What each of its goals lacks.
         why: String,
     },
+    /// Steps of an old plan that shall be kept cannot be.
+    #[error("the first {keep} steps of the plan cannot be kept: {why}")]
+    CannotKeep {
+        /// How many.
+        keep: usize,
+        /// Why not.
+        why: String,
+    },
     /// Plans shall be improved without an end.
     #[error("plans can only be improved within a limit: give a time limit or a number of iterations")]
     NoLimit,

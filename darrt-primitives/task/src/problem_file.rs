@@ -25,6 +25,7 @@ pub mod robot;
 pub mod safety;
 pub mod settings;
 pub mod shape;
+pub mod steer;
 pub mod suggest;
 mod toml_path;
 pub mod upper_face;
@@ -41,6 +42,7 @@ pub use robot::{ArmSide, Limits, Robot};
 pub use safety::Safety;
 pub use settings::{Budget, EdgeRule, PaperFigures, Place, Push, Sampling, Transit};
 pub use shape::{PlateRim, ShapeSpec};
+pub use steer::Steer;
 pub use world::{Bounds, Obstacle, Surface};
 
 use std::collections::BTreeMap;
@@ -103,6 +105,9 @@ pub struct ProblemFile {
     pub objects: Vec<Object>,
     /// Where objects and robot shall end.
     pub goal: Goal,
+    /// Rules for the steps of the plan.
+    #[serde(default, rename = "steer", skip_serializing_if = "Vec::is_empty")]
+    pub steers: Vec<Steer>,
     /// How far robot and objects keep from what they need not touch.
     #[serde(default)]
     pub safety: Safety,

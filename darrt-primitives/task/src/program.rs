@@ -13,6 +13,7 @@ use crate::planning_error::PlanningError;
 use crate::problem_file::collection::Collection;
 use crate::problem_file::{PrimitiveName, ProblemFile, ProblemFileError};
 use crate::registry::Registry;
+use crate::replan::{ReplanRequest, Replanned, replan};
 use crate::robot::{RobotError, RobotFacts, TaskRobot};
 
 /// A robot with its primitives and problems, ready to be asked.
@@ -45,6 +46,17 @@ pub trait Program: Send + Sync {
         cancel: &Cancel,
         observer: &mut dyn Observer,
     ) -> Result<PlanResult, PlanningError>;
+
+    /// Plans from an old plan; see [`replan`].
+    ///
+    /// # Errors
+    /// As [`replan`].
+    fn replan(
+        &self,
+        request: &ReplanRequest,
+        cancel: &Cancel,
+        observer: &mut dyn Observer,
+    ) -> Result<Replanned, PlanningError>;
 
     /// Why a search found no plan; see [`diagnose`].
     ///
@@ -85,6 +97,15 @@ impl<M: TaskRobot> Program for Registry<M> {
         observer: &mut dyn Observer,
     ) -> Result<PlanResult, PlanningError> {
         plan(self, request, cancel, observer)
+    }
+
+    fn replan(
+        &self,
+        request: &ReplanRequest,
+        cancel: &Cancel,
+        observer: &mut dyn Observer,
+    ) -> Result<Replanned, PlanningError> {
+        replan(self, request, cancel, observer)
     }
 
     fn diagnose(&self, request: &PlanRequest, result: &PlanResult) -> Result<Diagnosis, PlanningError> {

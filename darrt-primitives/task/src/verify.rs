@@ -16,6 +16,7 @@
 //! | is an object gripped, pushed as pushes go, or dragged from above? | `hand`, `drag` |
 //! | over which of the surfaces that lie flush is an object? | `flush` |
 //! | does the grip bear the weight, also as the object leans? | `hold`, `surface` |
+//! | does it keep to what a person wants? | `steer` |
 //! | is it left far enough from an edge? | `edge` |
 //! | does the plan start and end where it must? | `start`, `goal` |
 //!
@@ -40,6 +41,7 @@ mod schedule;
 mod solid;
 mod stage;
 mod start;
+mod steer;
 mod surface;
 mod warning;
 mod world;

@@ -102,7 +102,11 @@ fn written(value: &serde_json::Value) -> Result<String, Failure> {
     text.map_err(|error| Failure::new(Exit::CannotWrite, format!("the verdict cannot be written as JSON: {error}")))
 }
 
-fn read(program: &dyn Program, path: &Path) -> Result<PlanFile, Failure> {
+/// Reads a plan file.
+///
+/// # Errors
+/// [`Exit::BadInput`] with the file, and what is wrong with it.
+pub(crate) fn read(program: &dyn Program, path: &Path) -> Result<PlanFile, Failure> {
     PlanFile::read(path).map_err(|error| {
         let name = path.to_str().filter(|name| !path.exists() && program.problems().find(name).is_some());
         let built_in = |name| format!("{name}: is a built-in problem, not a plan; plan it with `darrt plan {name}`");

@@ -51,8 +51,8 @@ fn words(explanation: &Explanation) -> String {
     } else {
         lines.push(format!("{problem}: no plan in {}", counted(*iterations, "iteration")));
         lines.extend(explanation.causes.iter().flat_map(diagnosis::words::of_cause));
-        let found = if solved.is_empty() { "none of them has a plan" } else { "these have a plan" };
-        lines.push(format!("{} planned, {found}:", counted(*tried, "changed problem")));
+        let found = if solved.is_empty() { "none of them has a plan" } else { "with a plan:" };
+        lines.push(format!("{} planned, {found}", counted(*tried, "problem")));
     }
     for found in solved {
         let changes: Vec<_> = found.changes.iter().map(diagnosis::words::of_relaxation).collect();

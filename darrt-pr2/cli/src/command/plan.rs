@@ -18,6 +18,7 @@ use darrt_task::planning::{PlanRequest, PlanResult};
 use darrt_task::planning_error::PlanningError;
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
+use darrt_task::replan::{ReplanRequest, Replanned};
 use darrt_task::robot::RobotFacts;
 use darrt_task::text::counted;
 
@@ -32,8 +33,11 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
     let cancel = Cancel::new();
     listen(&cancel);
     let mut progress = Progress::start(&request.problem.name, limit(&request), options.quiet);
-    let result = program.plan(&request, &cancel, &mut progress).map_err(|error| refused(options, &request, &error))?;
+    let (result, kept) = planned(program, options, &request, &cancel, &mut progress)?;
     progress.finish();
+    if let Some(kept) = kept.filter(|_| !options.quiet) {
+        output.print(&kept)?;
+    }
     if options.stats {
         output.print(&statistics::report(&result.accounts))?;
     }
@@ -81,7 +85,34 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
         bases_from_reachability: false,
         cost: options.cost.clone().map_or_else(Default::default, Into::into),
         changes: Vec::new(),
+        hints: Vec::new(),
     }
+}
+
+/// Plans, from an old plan if there is one; what is kept of that in words.
+fn planned(
+    program: &dyn Program,
+    options: &PlanOptions,
+    request: &PlanRequest,
+    cancel: &Cancel,
+    progress: &mut Progress,
+) -> Result<(PlanResult, Option<String>), Failure> {
+    let refused = |error: PlanningError| refused(options, request, &error);
+    let Some(path) = &options.from else {
+        return Ok((program.plan(request, cancel, progress).map_err(refused)?, None));
+    };
+    let from = check::read(program, path)?;
+    let keep = options.keep.map(|keep| usize::try_from(keep).unwrap_or(usize::MAX));
+    let whole = ReplanRequest { plan: request.clone(), from, keep };
+    let Replanned { result, kept, of, refused: why } = program.replan(&whole, cancel, progress).map_err(refused)?;
+    let steps = counted(of as u64, "step");
+    let kept = match kept {
+        0 => "none is kept".to_owned(),
+        kept if kept == of => "all are kept".to_owned(),
+        kept => format!("the first {kept} are kept"),
+    };
+    let why = why.map_or_else(String::new, |why| format!("; the plan is no longer right: {why}"));
+    Ok((result, Some(format!("from {}: of {steps} {kept}{why}", path.display()))))
 }
 
 fn limit(request: &PlanRequest) -> Option<Duration> {

@@ -45,6 +45,13 @@ pub(crate) fn of_cause(cause: &Cause) -> Vec<String> {
             at(*place),
             names(others)
         )],
+        Cause::NoRobotGoal { tried: 0, .. } => {
+            vec!["the goal of the robot: the arm reaches it from nowhere".to_owned()]
+        }
+        Cause::NoRobotGoal { tried, blockers } => {
+            vec![format!("the goal of the robot: 0 of {tried} places free{}", in_the_way(blockers))]
+        }
+        Cause::Steered { steps } => vec![format!("`steer` forbids what was tried: {}", plain_names(steps))],
         Cause::Refused { reason } => vec![format!("a plan was found, but the verifier refused it: {reason}")],
     }
 }
@@ -62,6 +69,12 @@ fn names(blockers: &[Blocker]) -> String {
     let mut shown: Vec<_> = blockers.iter().take(NAMED).map(|blocker| format!("`{}`", blocker.body)).collect();
     let last = shown.pop().unwrap_or_default();
     if shown.is_empty() { last } else { format!("{} and {last}", shown.join(", ")) }
+}
+
+/// `Push of plate 120 times and Pick of plate 7 times`.
+fn plain_names(steps: &[Blocker]) -> String {
+    let times = |step: &Blocker| format!("{} {}", step.body, counted(step.count, "time"));
+    steps.iter().take(NAMED).map(times).collect::<Vec<_>>().join(", ")
 }
 
 fn in_the_way(blockers: &[Blocker]) -> String {
@@ -176,11 +189,13 @@ pub(crate) fn of_relaxation(relaxation: &Relaxation) -> String {
         Relaxation::LessMargin { to_m } => format!("with `safety.least_margin_m = {to_m}`"),
         Relaxation::Tolerance { object, to_m } => format!("with `tolerance_m = {to_m}` at the goal of `{object}`"),
         Relaxation::WiderBounds { by_m } => format!("with `bounds` wider by {by_m} m"),
+        Relaxation::Lower { obstacle, by_m } => format!("with `{obstacle}` lower by {by_m:.2} m"),
         Relaxation::Shrink { obstacle, share } => format!("with `{obstacle}` at {:.0} % of its size", share * 100.0),
         Relaxation::Without { obstacles } => format!("without {}", list(obstacles)),
         Relaxation::WithoutObject { object } => format!("without `{object}`"),
         Relaxation::WithoutGoal { object: Some(object) } => format!("without the goal of `{object}`"),
         Relaxation::WithoutGoal { object: None } => "without the goal of the robot".to_owned(),
+        Relaxation::WithoutRule { index } => format!("without `steer[{index}]`"),
         Relaxation::MoreTime { iterations } => format!("with {iterations} iterations"),
     }
 }

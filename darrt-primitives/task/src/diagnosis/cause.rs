@@ -255,6 +255,18 @@ pub enum Cause {
         /// Objects in the way, most first.
         others: Vec<Blocker>,
     },
+    /// The robot comes to none of the places where its own goal wants it.
+    NoRobotGoal {
+        /// Places that were tried; 0 if the arm reaches none.
+        tried: u64,
+        /// What was in the way, most first.
+        blockers: Vec<Blocker>,
+    },
+    /// Rules of the problem kept steps from being taken; that is no reason by itself.
+    Steered {
+        /// Which steps, most first.
+        steps: Vec<Blocker>,
+    },
     /// A plan was found, and the verifier refused it.
     Refused {
         /// Why.
@@ -265,7 +277,7 @@ pub enum Cause {
 impl Cause {
     /// Does it keep every plan away, as far as was looked? The others only make one harder to find.
     pub fn is_decisive(&self) -> bool {
-        !matches!(self, Self::Behind { .. } | Self::Refused { .. })
+        !matches!(self, Self::Behind { .. } | Self::Steered { .. } | Self::Refused { .. })
     }
 
     /// The object that it is about.
@@ -279,7 +291,9 @@ impl Cause {
             | Self::Behind { object, .. } => Some(object),
             Self::NoHand { hands } => Some(&hands.object),
             Self::NoPush { pushes, .. } => Some(&pushes.object),
-            Self::MissingPrimitive { .. } | Self::Refused { .. } => None,
+            Self::MissingPrimitive { .. } | Self::NoRobotGoal { .. } | Self::Steered { .. } | Self::Refused { .. } => {
+                None
+            }
         }
     }
 }

@@ -99,6 +99,7 @@ pub fn explain<M: TaskRobot>(
         explanation.solved_as_it_is = Some(solved.iterations);
     } else {
         let mut singles: Vec<_> = Relaxation::all(registry, problem);
+        singles.extend(explanation.causes.iter().flat_map(|cause| Relaxation::lowered(problem, cause)));
         singles.push(Relaxation::MoreTime { iterations: request.iterations.saturating_mul(MORE) });
         explanation.solved = solver.solve_all(singles.iter().map(|one| vec![one.clone()]).collect());
         if explanation.solved.is_empty() {

@@ -124,8 +124,14 @@ impl<'a, M: Manipulator> Look<'a, M> {
         let groups = self.goal.groups().iter().filter(|group| group.iter().any(|goal| goal.object == id));
         let alone = TabletopGoal::new(groups.cloned().collect());
         let is_in_hand = alone.groups().iter().flatten().all(|goal| goal.grip == Grip::Held);
+        let may_be_in_hand = alone.groups().iter().flatten().any(|goal| goal.grip != Grip::Released);
         let of_case = |_: &Self, case: &Case<'_>, ends: &mut Ends<'_, '_, M>| {
-            if is_in_hand { ends.of_holding(case) } else { ends.of_setting_down(case) }
+            let is_in_air = || self.m.surface_under(id, &case.pose, ON_SURFACE_M).is_none();
+            if is_in_hand || (may_be_in_hand && is_in_air()) {
+                ends.of_holding(case)
+            } else {
+                ends.of_setting_down(case)
+            }
         };
         self.survey(state, id, Place::Goal, of_case, |rng| alone.sample(self.m, rng)?.object(id).copied())
     }

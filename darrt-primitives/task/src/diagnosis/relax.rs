@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::cause::{Cause, Stage};
+use super::cause::{Cause, Place, Stage};
 use crate::problem_file::{GraspFamily, LengthRange, Limits, Obstacle, PrimitiveName, ProblemFile, ShapeSpec};
 use crate::registry::Registry;
 use crate::robot::TaskRobot;
@@ -15,6 +15,8 @@ const SHORT_M: f64 = 0.005;
 /// Heights of the lift that are tried, metres, highest first.
 const LIFTS_M: std::ops::RangeInclusive<u32> = 1..=20;
 const LIFT_STEP_M: f64 = 0.05;
+/// What carries a goal is lowered by whole steps, metres.
+const LOWER_STEP_M: f64 = 0.05;
 /// How much wider bounds and tolerances become, metres.
 const WIDER_M: f64 = 2.0;
 const LOOSER_M: f64 = 0.05;
@@ -68,6 +70,13 @@ pub enum Relaxation {
         /// By so much on all sides, metres.
         by_m: f64,
     },
+    /// What carries a goal is lower.
+    Lower {
+        /// The obstacle under the surface.
+        obstacle: String,
+        /// By so much, metres.
+        by_m: f64,
+    },
     /// An obstacle is smaller.
     Shrink {
         /// The obstacle.
@@ -89,6 +98,11 @@ pub enum Relaxation {
     WithoutGoal {
         /// The object; `null` for the robot.
         object: Option<String>,
+    },
+    /// A rule of the problem is gone.
+    WithoutRule {
+        /// Its index in the file.
+        index: usize,
     },
     /// More iterations.
     MoreTime {
@@ -119,6 +133,7 @@ impl Relaxation {
         let with_goal = problem.goal.by_object();
         all.extend(with_goal.iter().map(|(name, _)| Self::Tolerance { object: (*name).to_owned(), to_m: LOOSER_M }));
         all.push(Self::WiderBounds { by_m: WIDER_M });
+        all.extend((0..problem.steers.len()).map(|index| Self::WithoutRule { index }));
         let loose: Vec<_> = loose_obstacles(problem).collect();
         all.extend(loose.iter().map(|obstacle| Self::Shrink { obstacle: obstacle.name.clone(), share: SMALLER }));
         all.extend(loose.iter().map(|obstacle| Self::Without { obstacles: vec![obstacle.name.clone()] }));
@@ -170,7 +185,24 @@ impl Relaxation {
             _ => false,
         };
         let all = Self::all(registry, problem).into_iter().chain(Self::groups(problem));
-        all.filter(|relaxation| is_about(relaxation)).collect()
+        let lower = causes.iter().flat_map(|cause| Self::lowered(problem, cause));
+        all.filter(|relaxation| is_about(relaxation)).chain(lower).collect()
+    }
+
+    /// The carriers of a goal that is out of reach, lower by as much as it is beyond.
+    pub(super) fn lowered(problem: &ProblemFile, cause: &Cause) -> Vec<Self> {
+        let Cause::NoHand { hands } = cause else { return Vec::new() };
+        let (Some(beyond_m), Some(Stage::Reach)) = (hands.beyond_m, hands.last_stage()) else { return Vec::new() };
+        let by_m = (beyond_m / LOWER_STEP_M).ceil() * LOWER_STEP_M;
+        let surfaces = match hands.place {
+            Place::Goal => {
+                let goals = problem.goal.objects.iter().filter(|goal| goal.object == hands.object);
+                goals.filter_map(|goal| goal.on.clone()).collect()
+            }
+            _ => problem.object(&hands.object).map(|object| object.on.clone()).into_iter().collect::<Vec<_>>(),
+        };
+        let carriers = surfaces.iter().filter_map(|name| problem.surface(name)?.top_of.clone());
+        carriers.map(|obstacle| Self::Lower { obstacle, by_m }).collect()
     }
 
     /// The changed problem; `None` where it would be no problem any more.
@@ -216,6 +248,10 @@ impl Relaxation {
                     *range = [range[0] - by_m, range[1] + by_m];
                 }
             }
+            Self::Lower { obstacle, by_m } => {
+                let obstacle = problem.obstacles.iter_mut().find(|other| other.name == *obstacle)?;
+                *obstacle.at.get_mut(2)? -= by_m;
+            }
             Self::Shrink { obstacle, share } => {
                 let obstacle = problem.obstacles.iter_mut().find(|other| other.name == *obstacle)?;
                 shrink(&mut obstacle.shape, *share)?;
@@ -224,6 +260,9 @@ impl Relaxation {
             Self::WithoutObject { object } => problem.objects.retain(|other| other.name != *object),
             Self::WithoutGoal { object: Some(object) } => problem.goal.objects.retain(|goal| goal.object != *object),
             Self::WithoutGoal { object: None } => problem.goal.robot = None,
+            Self::WithoutRule { index } => {
+                drop((*index < problem.steers.len()).then(|| problem.steers.remove(*index))?)
+            }
             Self::MoreTime { iterations } => problem.budget.iterations = Some(*iterations),
         }
         Some(())

@@ -23,6 +23,7 @@ use super::options::VerifyOptions;
 use super::refusal::{Refusal, RefusalKind, Site};
 use super::robot::{Robot, world_from_robot};
 use super::stage::{Hit, PairKind, Rule, Stage};
+use super::steer;
 use super::world::World;
 use super::{Proof, near, start};
 use crate::plan_file::{PlanFile, Step, Waypoint};
@@ -138,7 +139,11 @@ impl<'a> Judge<'a> {
         let mut last = &self.plan.start;
         for (number, step) in (1..).zip(&self.plan.steps) {
             let site = self.site(number, step)?;
+            let before = (!self.plan.problem.steers.is_empty()).then(|| here.clone());
             here = self.step(site, step, last, here)?;
+            if let Some(before) = before {
+                steer::check(&self.plan.problem.steers, site, step, (&self.world, &self.robot), (&before, &here))?;
+            }
             last = step.waypoints.last().unwrap_or(last);
         }
         goal::check(

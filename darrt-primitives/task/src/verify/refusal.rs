@@ -40,6 +40,8 @@ pub enum RefusalKind {
     Grasp,
     /// The tool leaves the straight line that the primitive promises.
     StraightLine,
+    /// A step does what a rule of the problem forbids.
+    Steer,
     /// A push that does not go as pushes go.
     Push,
     /// An object does not stand on a surface where it must.
