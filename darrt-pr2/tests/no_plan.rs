@@ -200,20 +200,20 @@ fn wall_of_obstacles_between_robot_and_goal() {
     assert_eq!((floor.0.as_str(), diagnosis.outcome), ("mug", Outcome::Hopeless));
     assert!(floor.1.walls.iter().any(|wall| wall.body == "wall"), "{:?}", floor.1);
     // Between the wall and the bounds, less a table.
-    assert!((10.0..40.0).contains(&floor.1.free_m2), "{:?}", floor.1);
+    assert!((40.0..60.0).contains(&floor.1.free_m2), "{:?}", floor.1);
 }
 
 #[test]
 fn base_boxed_in() {
     let mut case = Case::default();
-    case.world = case.world.replace("at = [0.0, 0.0, 0.37]", "at = [1.5, 0.0, 0.37]") + &walls([-1.0, 0.0], 0.6);
+    case.world = case.world.replace("at = [0.0, 0.0, 0.37]", "at = [1.5, 0.0, 0.37]") + &walls([-1.0, 0.0], 0.9);
     case.objects = mug("mug", [1.3, 0.2], "");
     case.goals = goal("mug", "table", [1.3, -0.3]);
     let (floor, _) = case.cause(|cause| match cause {
         Cause::CutOff { place: Place::Start, floor, .. } => Some(floor.clone()),
         _ => None,
     });
-    assert!(floor.free_m2 < 0.5, "{floor:?}");
+    assert!(floor.free_m2 < 2.0, "{floor:?}");
     assert_eq!(floor.walls.iter().filter(|wall| wall.body.starts_with("wall")).count(), 4);
 }
 
@@ -293,7 +293,7 @@ fn side_table_too_high_for_the_arm() {
     let beyond_m = hands.beyond_m.unwrap();
     assert!((0.3..1.0).contains(&beyond_m), "{beyond_m}");
     // So much lower it is reached.
-    case.world = case.world.replace("1.975", &format!("{}", 1.975 - beyond_m - 0.1));
+    case.world = case.world.replace("1.975", &format!("{}", 1.975 - beyond_m - 0.3));
     let request = PlanRequest::new(case.problem(), 0);
     assert_eq!(causes(&Registry::<Pr2>::new(), &request).unwrap(), []);
 }
@@ -318,7 +318,7 @@ fn shelf(height_m: f64, robot: &'static str) -> Case {
 
 #[test]
 fn torso_too_low() {
-    let case = shelf(1.20, "torso_m = 0.02");
+    let case = shelf(1.30, "torso_m = 0.02");
     let (_, diagnosis) = case.hands(Place::Goal, Stage::Reach);
     let is_lift = |relaxation: &Relaxation| matches!(relaxation, Relaxation::Lift { to_m } if *to_m > 0.1);
     assert!(diagnosis.remedies.iter().any(is_lift), "{diagnosis:#?}");
@@ -326,8 +326,8 @@ fn torso_too_low() {
 
 #[test]
 fn soft_limits_where_hard_ones_would_do() {
-    let case = shelf(1.45, "torso_m = 0.3");
-    let (_, diagnosis) = case.hands(Place::Goal, Stage::Reach);
+    let case = shelf(1.50, "torso_m = 0.3");
+    let (_, diagnosis) = case.hands(Place::Goal, Stage::Arm);
     assert!(diagnosis.remedies.contains(&Relaxation::HardLimits), "{diagnosis:#?}");
 }
 
@@ -412,9 +412,9 @@ fn a_robot_goal_in_a_wall() {
 #[test]
 fn what_was_done_before_the_end_is_a_plan_that_can_be_judged() {
     let mut case = Case { iterations: 600, ..Case::default() };
-    case.objects += &mug("jar", [-0.2, 0.0], "");
+    case.objects += &mug("jar", [-0.2, -0.1], "");
     case.world += &cage([-0.2, 0.2]);
-    case.goals += &goal("jar", "table", [-0.2, -0.1]);
+    case.goals += &goal("jar", "table", [-0.2, -0.4]);
     case.goals = case.goals.replace("-0.3]", "0.4]");
     let request = PlanRequest { iterations: Some(case.iterations), ..PlanRequest::new(case.problem(), 0) };
     let result = plan(&Registry::<Pr2>::new(), &request, &Cancel::new(), &mut Silent).unwrap();
@@ -455,7 +455,8 @@ fn sides(file: &PlanFile) -> Vec<f64> {
         let waypoint = step.waypoints.first()?;
         let object = Isometry3::from(*waypoint.objects.get("mug")?);
         let hand = object * Isometry3::from(hold.tool_from_object).inverse();
-        let beside = hand.translation.vector - object.translation.vector;
+        let wrist = hand * nalgebra::Point3::new(-0.1, 0.0, 0.0);
+        let beside = wrist.coords - object.translation.vector;
         Some(beside.y.atan2(beside.x).to_degrees())
     };
     file.steps.iter().filter(|step| step.primitive == PrimitiveName::PICK).filter_map(side).collect()

@@ -3,18 +3,20 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use rand::Rng;
+
 use super::{Darrt, Strategy};
 use crate::budget::Interrupt;
 use crate::domain::Domain;
 use crate::extend::Extender;
-use crate::goal::Reach;
+use crate::goal::Goal;
 use crate::partial::PartialState;
 use crate::pipeline::Pipeline;
 use crate::plan::Plan;
 use crate::problem::Problem;
 use crate::random::{Purpose, stream};
 use crate::settle::settled;
-use crate::state::ObjectId;
+use crate::state::{ObjectId, State};
 use crate::tree::NodeId;
 
 /// States of one attempt that are kept, and of all attempts that are tried.
@@ -40,6 +42,23 @@ impl Rank {
     /// The better one first.
     fn compare(&self, other: &Self) -> Ordering {
         other.parts_met.cmp(&self.parts_met).then(self.distance_m.total_cmp(&other.distance_m))
+    }
+}
+
+/// Every state in which the objects stand as in a known one, and that meets as many parts of the goal.
+struct AsGood<D: Domain> {
+    target: PartialState<D>,
+    goal: Arc<dyn Goal<D>>,
+    parts_met: usize,
+}
+
+impl<D: Domain> Goal<D> for AsGood<D> {
+    fn is_satisfied(&self, m: &D, state: &State<D>) -> bool {
+        self.target.is_met(m, state) && self.goal.parts_met(m, state) >= self.parts_met
+    }
+
+    fn sample(&self, _: &D, _: &mut dyn Rng) -> Option<PartialState<D>> {
+        Some(self.target.clone())
     }
 }
 
@@ -85,8 +104,8 @@ pub(crate) fn best_of<D: Domain>(
     parts.sort_by(|a, b| a.rank.compare(&b.rank));
     parts.truncate(KEPT);
     let whole = |part: &Part<D>| {
-        let target = reached(problem, &part.plan);
-        let problem = problem.part(problem.start().clone(), Arc::new(Reach::new(target)));
+        let (target, goal, parts_met) = (reached(problem, &part.plan), problem.shared_goal(), part.rank.parts_met);
+        let problem = problem.part(problem.start().clone(), Arc::new(AsGood { target, goal, parts_met }));
         let extender = extender(&problem, strategy);
         let pipeline = Pipeline { extender, strategy, interrupt: Interrupt::NEVER, is_part: true, key: (seed, 0, 0) };
         pipeline.run(&part.plan).ok().map(|solution| solution.into_parts().0)

@@ -104,7 +104,7 @@ fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> {
         format!(" (nearest so far: {metres:.2} m to move, in {})", counted(result.nodes as u64, "state"))
     });
     let remedies: Vec<_> = diagnosis.remedies.iter().map(words::of_relaxation).collect();
-    let would_help = format!("nothing is in the way {}", remedies.join("; or "));
+    let would_help = format!("it would help, as far as a few tries tell: {}", remedies.join("; or "));
     let mut lines: Vec<_> = (!remedies.is_empty()).then_some(would_help).into_iter().collect();
     lines.push(match diagnosis.outcome {
         Outcome::Hopeless => {

@@ -47,6 +47,8 @@ use cause::{Blocker, Cause, Place, Stage};
 use hands::{Case, Look, Survey, culprit, ranked};
 use relax::Relaxation;
 
+/// A state so near to the goal, by the planner's distance, is at it, metres.
+const AT_GOAL_M: f64 = 5e-4;
 /// Iterations that say nothing of a problem.
 const FEW: u64 = 10;
 /// Changes that are looked at, and of those that help so many are told.
@@ -146,6 +148,10 @@ pub fn diagnose<M: TaskRobot>(
         Some(reason) => vec![Cause::Refused { reason: reason.clone() }],
         None => causes(registry, request)?,
     };
+    if result.nearest_to_goal < AT_GOAL_M {
+        // The search has been there, so a hand comes there.
+        causes.retain(|cause| !cause.is_about_arriving());
+    }
     let stopped = result.accounts.blocks.iter().filter(|((_, by), _)| by == STEER);
     let steps = ranked(stopped.map(|((step, _), count)| (step.clone(), *count)).collect());
     if !steps.is_empty() {
@@ -181,7 +187,7 @@ fn remedies<M: TaskRobot>(registry: &Registry<M>, request: &PlanRequest, found: 
         let Some(problem) = relaxation.applied(&request.problem) else { return false };
         let request = PlanRequest { problem, ..request.clone() };
         prepare(registry, &request.problem).is_ok()
-            && causes(registry, &request).is_ok_and(|causes| !causes.iter().any(Cause::is_decisive))
+            && looked_for(registry, &request, true).is_ok_and(|causes| !causes.iter().any(Cause::is_decisive))
     };
     let near = Relaxation::against(registry, &request.problem, found);
     near.into_iter().take(TRIED_REMEDIES).filter(helps).take(REMEDIES).collect()
@@ -192,12 +198,21 @@ fn remedies<M: TaskRobot>(registry: &Registry<M>, request: &PlanRequest, found: 
 /// # Errors
 /// As [`prepare`](crate::planning::prepare).
 pub fn causes<M: TaskRobot>(registry: &Registry<M>, request: &PlanRequest) -> Result<Vec<Cause>, PlanningError> {
+    looked_for(registry, request, false)
+}
+
+/// [`causes`], with fewer tries if it is enough to see whether something good is easily found.
+fn looked_for<M: TaskRobot>(
+    registry: &Registry<M>,
+    request: &PlanRequest,
+    is_quick: bool,
+) -> Result<Vec<Cause>, PlanningError> {
     let file = &request.problem;
     let (robot, arm) = M::build(&file.robot)?;
     let allowed: Vec<_> = registry.allowed(file).collect();
     let Built { world, start, goal, scene, .. } = world::build_with(registry, file, robot, arm)?;
     let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal, scene: &scene };
-    Ok(Inquest { outlook, look: Look { m: &world, start: &start, goal: &goal } }.causes())
+    Ok(Inquest { outlook, look: Look { m: &world, start: &start, goal: &goal, is_quick } }.causes())
 }
 
 /// Looks for causes.
@@ -215,7 +230,7 @@ impl<'a, M: Manipulator> Inquest<'a, M> {
 
     /// What keeps the robot from its own goal: it meets something fixed wherever it would be, or is nowhere.
     fn of_robot(&self) -> Option<Cause> {
-        let Look { m, start, goal } = self.look;
+        let Look { m, start, goal, .. } = self.look;
         let (robot, mut tried) = (m.manipulator(), 0);
         let mut blockers = BTreeMap::<String, u64>::new();
         let alone = goal.of_robot()?;

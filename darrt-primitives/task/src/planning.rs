@@ -216,13 +216,6 @@ pub struct Prepared<M: TaskRobot> {
     goal: TabletopGoal<M::Joints>,
 }
 
-impl<M: TaskRobot> Prepared<M> {
-    /// Writes its plans.
-    pub fn exporter(&self) -> &Exporter {
-        &self.exporter
-    }
-}
-
 /// Builds and checks everything about a problem before the search.
 ///
 /// # Errors
@@ -270,9 +263,8 @@ fn prepare_watched<M: TaskRobot>(
     let verifier =
         FileVerifier { exporter: Arc::clone(&exporter), facts, cancel: cancel.clone(), watch: Arc::clone(watch) };
     let rules: Arc<[_]> = file.steers.clone().into();
-    let steered = |part| match rules.is_empty() {
-        true => part,
-        false => Box::new(Steered { part, rules: Arc::clone(&rules) }) as _,
+    let steered = |part| {
+        if rules.is_empty() { part } else { Box::new(Steered { part, rules: Arc::clone(&rules) }) as _ }
     };
     let primitives = registry.build_primitives(file)?.into_iter().map(steered);
     let problem = Problem::new(Parts {

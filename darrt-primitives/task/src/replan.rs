@@ -13,13 +13,15 @@ use darrt_core::plan::Plan;
 use darrt_primitives::contract::HandUse;
 use nalgebra::{Isometry3, Point2};
 
+use crate::export::Exporter;
 use crate::plan_file::{Partial, PlanFile, PlannerFacts, Pose, Step, Waypoint};
-use crate::planning::{PlanRequest, PlanResult, plan, prepare};
+use crate::planning::{PlanRequest, PlanResult, plan};
 use crate::planning_error::PlanningError;
 use crate::problem_file::ProblemFile;
 use crate::registry::Registry;
 use crate::robot::{RobotFacts, TaskRobot};
 use crate::verify::{Proof, Refusal, VerifyOptions, verify_unless};
+use crate::world::{self, Built};
 
 /// What stands on a surface may be this far from its height, metres.
 const ON_TOP_M: f64 = 1e-3;
@@ -62,10 +64,13 @@ pub fn replan<M: TaskRobot>(
 ) -> Result<Replanned, PlanningError> {
     let problem = &request.plan.problem;
     let facts = M::facts(&problem.robot)?;
-    let prepared = prepare(registry, problem)?;
-    let empty = Plan::new(prepared.problem.start().clone(), Vec::new());
-    let blank =
-        prepared.exporter().export(prepared.problem.domain(), &empty, request.plan.seed, PlannerFacts::default())?;
+    let Built { world, start, .. } = world::build(registry, problem)?;
+    let blank = Exporter::new(problem, &facts)?.export(
+        &world,
+        &Plan::new(start, Vec::new()),
+        request.plan.seed,
+        PlannerFacts::default(),
+    )?;
     let old = Old { file: adapted(&request.from, &blank), facts: &facts, cancel };
     let of = old.file.steps.len();
     let judged = old.judge();
@@ -92,7 +97,10 @@ pub fn replan<M: TaskRobot>(
             return Err(PlanningError::CannotKeep { keep, why });
         }
         Some(keep) => keep,
-        None => (0..=good).rev().find(free).unwrap_or(0),
+        None => {
+            let useful = good.min(old.before_what_is_done_again(&request.from.problem));
+            (0..=useful).rev().find(free).unwrap_or(0)
+        }
     };
     let attempts = if request.keep.is_some() || kept == 0 { vec![kept] } else { vec![kept, 0] };
     let mut last = None;
@@ -132,6 +140,27 @@ impl Old<'_> {
     fn allowed(&self, good: usize) -> usize {
         let is_allowed = |step: &&Step| self.file.problem.allows(&step.primitive);
         self.file.steps.iter().take(good).take_while(is_allowed).count()
+    }
+
+    /// How many steps there are before an object whose goal is another one now is taken or pushed for the last time: what is done
+    /// with it then leads to the wrong place.
+    fn before_what_is_done_again(&self, before: &ProblemFile) -> usize {
+        let goal = &self.file.problem.goal;
+        let has_other_goal = |name: &str| {
+            let of = |problem: &ProblemFile| -> Vec<_> {
+                problem.goal.objects.iter().filter(|goal| goal.object == name).cloned().collect()
+            };
+            of(before) != of(&self.file.problem)
+        };
+        let names: Vec<_> = goal.by_object().into_iter().map(|(name, _)| name).filter(|n| has_other_goal(n)).collect();
+        let begins = |step: &Step| {
+            let contract = self.file.contracts.get(&step.primitive);
+            contract.is_some_and(|contract| contract.hand == HandUse::Takes || contract.slides())
+        };
+        let last = |name: &&str| {
+            self.file.steps.iter().rposition(|step| step.object.as_deref() == Some(*name) && begins(step))
+        };
+        names.iter().filter_map(last).min().unwrap_or(self.file.steps.len())
     }
 
     /// Is the hand free behind so many steps, and may it go anywhere?

@@ -280,6 +280,15 @@ impl Cause {
         !matches!(self, Self::Behind { .. } | Self::Steered { .. } | Self::Refused { .. })
     }
 
+    /// Does it say that an object cannot be brought to its goal from anywhere?
+    pub fn is_about_arriving(&self) -> bool {
+        match self {
+            Self::NoHand { hands } => hands.place == Place::Goal,
+            Self::NoRoom { .. } => true,
+            _ => false,
+        }
+    }
+
     /// The object that it is about.
     pub fn object(&self) -> Option<&str> {
         match self {

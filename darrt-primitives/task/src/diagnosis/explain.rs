@@ -10,8 +10,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::cause::Cause;
-use super::causes;
 use super::relax::Relaxation;
+use super::{causes, looked_for};
 use crate::planning::{PlanRequest, plan};
 use crate::planning_error::PlanningError;
 use crate::problem_file::ProblemFile;
@@ -168,7 +168,7 @@ impl<M: TaskRobot> Solver<'_, M> {
             _ => None,
         });
         let mut request = PlanRequest { problem: changed.clone(), ..self.request.plan.clone() };
-        let is_doubted = causes(self.registry, &request).ok()?.iter().any(Cause::is_decisive);
+        let is_doubted = looked_for(self.registry, &request, true).ok()?.iter().any(Cause::is_decisive);
         let iterations = more.unwrap_or(self.request.iterations);
         // A problem as it is gets all of them: that nothing was found in a few tries is no proof.
         let share = if is_doubted && !changes.is_empty() { DOUBTED } else { 1 };

@@ -27,10 +27,12 @@ use rand::{Rng, RngExt as _};
 
 use super::cause::{Blocker, Hands, Place, Stage, StageCount};
 
-/// So many poses in which the hand alone is free are looked at.
+/// So many poses in which the hand alone is free are looked at, and so many more if none of them is good and each ended where
+/// another base or arm might have been better.
 const FREE_HANDS: u64 = 24;
-/// For them so many are drawn at most: most rim grasps meet the table.
-const DRAWS: u64 = 384;
+const MORE_HANDS: u64 = 240;
+/// For each of them so many are drawn at most: most rim grasps meet the table.
+const DRAWS: u64 = 16;
 /// Bases that are tried for each of them.
 const BASES: usize = 48;
 /// Configurations of the arm for each base.
@@ -51,6 +53,8 @@ pub(super) struct Look<'a, M: Manipulator> {
     pub(super) m: &'a Tabletop<M>,
     pub(super) start: &'a TabletopState<M>,
     pub(super) goal: &'a TabletopGoal<M::Joints>,
+    /// Is it enough to see whether something good is easily found?
+    pub(super) is_quick: bool,
 }
 
 impl<M: Manipulator> Clone for Look<'_, M> {
@@ -148,7 +152,8 @@ impl<'a, M: Manipulator> Look<'a, M> {
         let (mut good, mut off_support_m, mut unreached) = (Vec::new(), Vec::new(), Vec::new());
         let (mut tried, mut free, mut bases) = (0, 0, 0);
         let movable = self.m.movable(id);
-        while let Some(movable) = movable.filter(|_| tried < DRAWS && free < FREE_HANDS) {
+        let mut wanted = FREE_HANDS;
+        while let Some(movable) = movable.filter(|_| tried < DRAWS * wanted && free < wanted) {
             let rng = &mut stream(0, 0, tried, Purpose::Attempt);
             tried += 1;
             let end = match (draw(self.m, movable, rng), pose(rng)) {
@@ -178,6 +183,9 @@ impl<'a, M: Manipulator> Look<'a, M> {
                 (_, None) => End::at(Stage::Support),
             };
             free += u64::from(end.stage > Stage::Approach);
+            if free == FREE_HANDS && good.is_empty() && !self.is_quick {
+                wanted = MORE_HANDS;
+            }
             let (count, bodies) = ends.entry(end.stage).or_default();
             *count += 1;
             if let Some(body) = end.body {

@@ -10,14 +10,17 @@ use darrt_core::validity::{Blame, BlockKind};
 use darrt_primitives::contract::{Contract, HandUse};
 use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
+use nalgebra::Point3;
 use rand::Rng;
 
 use crate::problem_file::{Region, Steer};
 
 /// What stands for a body in the way of a step that a rule forbids.
 pub(crate) const STEER: &str = "`steer`";
-/// A hand that is no farther beside the centre of an object is above it, metres.
-const ABOVE_M: f64 = 0.005;
+/// The side of the hand is that of a point so far behind its tool frame, metres: at a grasp the frame itself is in the object.
+const WRIST_M: f64 = 0.1;
+/// A hand of which that is no farther beside the centre of an object is above it, metres.
+const ABOVE_M: f64 = 0.01;
 
 /// A primitive of which only those chains are proposed that keep to the rules.
 pub(super) struct Steered<P> {
@@ -75,7 +78,8 @@ impl<P> Steered<P> {
         let id: ObjectId = instance.object?;
         let name = &*m.movable(id)?.body.name;
         let at = if contract.hand == HandUse::LetsGo { after } else { before };
-        let hand = m.manipulator().world_from_tool(&at.robot).translation.vector - at.object(id)?.translation.vector;
+        let wrist = m.manipulator().world_from_tool(&at.robot) * Point3::new(-WRIST_M, 0.0, 0.0);
+        let hand = wrist.coords - at.object(id)?.translation.vector;
         let [x, y, _] = at.robot.base;
         let is_about = |rule: &&Steer| {
             rule.object.as_deref().is_none_or(|object| object == name)

@@ -1,6 +1,6 @@
 //! Steps keep to the rules by which a person steers a plan.
 
-use nalgebra::Vector2;
+use nalgebra::{Point3, Vector2};
 
 use super::motion::State;
 use super::refusal::{Refusal, RefusalKind, Site};
@@ -12,7 +12,9 @@ use darrt_primitives::contract::HandUse;
 
 /// A hand that is no farther beside the centre of an object is above it, metres. More than the planner allows, because the same
 /// place has other digits here.
-const ABOVE_M: f64 = 0.006;
+const ABOVE_M: f64 = 0.011;
+/// The hand is where a point is that lies so far behind its tool frame, metres.
+const WRIST_M: f64 = 0.1;
 /// What rounding may do to an angle, degrees, and to a place, metres.
 const ROUNDING: f64 = 1e-6;
 
@@ -66,11 +68,12 @@ pub(super) fn check(
     Ok(())
 }
 
-/// From the centre of the object to the tool, seen from above.
+/// From the centre of the object to the wrist, seen from above.
 fn beside(robot: &Robot, world: &World<'_>, at: &State, name: &str) -> Option<Vector2<f64>> {
     let pose = at.objects.get(world.object(name)?)?;
     let mut links = Vec::new();
     robot.link_poses(&at.joints, &mut links);
     let tool = world_from_robot(&at.base) * links.get(robot.tool)?;
-    Some((tool.translation.vector - pose.translation.vector).xy())
+    let wrist = tool * Point3::new(-WRIST_M, 0.0, 0.0);
+    Some((wrist.coords - pose.translation.vector).xy())
 }
