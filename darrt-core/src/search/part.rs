@@ -140,3 +140,38 @@ fn beginning<D: Domain>(problem: &Problem<D>, strategy: &Strategy<D>, seed: u64,
     }
     (!steps.is_empty()).then(|| Plan::new(plan.start().clone(), steps))
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::budget::{Budget, Stop};
+    use crate::observe::Silent;
+    use crate::solve::{SolveOptions, solve};
+    use crate::testing::puck::problems::four_pucks;
+    use crate::testing::puck::setup::paper_strategy;
+
+    #[test]
+    fn what_is_left_of_a_search_without_a_plan_is_free_and_moves_something() {
+        let (problem, strategy) = (four_pucks().unwrap(), paper_strategy().unwrap());
+        let m = problem.domain();
+        let mut count = 0;
+        for seed in 0..6 {
+            let budget = Budget { iterations: Some(40), ..Budget::default() };
+            let options = SolveOptions { seed, budget, ..SolveOptions::default() };
+            let outcome = solve(&problem, &strategy, &options, &mut Silent);
+            assert_eq!(outcome.solution.is_some(), outcome.stop == Stop::Solved);
+            let Some(part) = outcome.part else { continue };
+            assert!(outcome.solution.is_none());
+            count += 1;
+            let mut here = problem.start().clone();
+            for step in part.steps() {
+                let free = problem.validity().free_prefix(m, &step.instance, &here);
+                assert!(free.fraction >= step.until, "{:?}", free.blame);
+                here = step.instance.at(m, step.until, &here);
+            }
+            assert_ne!(here.objects, problem.start().objects);
+            let again = solve(&problem, &strategy, &options, &mut Silent).part.unwrap();
+            assert_eq!(again.end(m), here);
+        }
+        assert!(count > 0);
+    }
+}
