@@ -19,7 +19,7 @@ use crate::registry::Registry;
 use crate::robot::TaskRobot;
 
 /// Part of the iterations for a changed problem in which something still keeps a plan away, as far as a few tries tell.
-const DOUBTED: u64 = 10;
+const DOUBTED: u64 = 4;
 /// How many times the iterations are tried as a change of its own.
 const MORE: u64 = 4;
 /// Pairs of changes that are tried at most.
