@@ -23,7 +23,7 @@ const UNTRIED: [Bucket; 3] = [Bucket::NotUseful, Bucket::NotChosen, Bucket::Budg
 /// At most ten lines: what ended the search, what keeps a plan away, and what may help.
 pub(crate) fn explain(result: &PlanResult, diagnosis: &Diagnosis) -> String {
     let first =
-        format!("{} after {}, {}", result.stop, seconds(result.elapsed), counted(result.iterations, "iteration"),);
+        format!("{} after {}, {}", result.stop, seconds(result.elapsed), counted(result.iterations, "iteration"));
     let mut lines: Vec<_> = diagnosis.causes.iter().flat_map(words::of_cause).collect();
     let last = advice(result, diagnosis);
     let room = LINES - 1 - last.len() - usize::from(result.partial.is_some());

@@ -101,16 +101,16 @@ pub fn explain<M: TaskRobot>(
         let mut singles: Vec<_> = Relaxation::all(registry, problem);
         singles.extend(explanation.causes.iter().flat_map(|cause| Relaxation::lowered(problem, cause)));
         singles.push(Relaxation::MoreTime { iterations: request.iterations.saturating_mul(MORE) });
-        explanation.solved = solver.solve_all(singles.iter().map(|one| vec![one.clone()]).collect());
+        explanation.solved = solver.solve_all(&singles.iter().map(|one| vec![one.clone()]).collect::<Vec<_>>());
         if explanation.solved.is_empty() {
             let groups: Vec<_> = Relaxation::groups(problem).into_iter().map(|group| vec![group]).collect();
-            let solved = solver.solve_all(groups);
+            let solved = solver.solve_all(&groups);
             explanation.solved = solved.first().and_then(|first| solver.least(first)).into_iter().collect();
         }
         if explanation.solved.is_empty() {
             let near = Relaxation::against(registry, problem, &explanation.causes);
             let pairs = pairs(if near.len() > 1 { &near } else { &singles });
-            explanation.solved = solver.solve_all(pairs);
+            explanation.solved = solver.solve_all(&pairs);
         }
     }
     explanation.tried = solver.tried.into_inner() as u64;
@@ -138,7 +138,7 @@ struct Solver<'a, M: TaskRobot> {
 
 impl<M: TaskRobot> Solver<'_, M> {
     /// The sets with which there is a plan, in the order in which they are given.
-    fn solve_all(&self, sets: Vec<Vec<Relaxation>>) -> Vec<Solved> {
+    fn solve_all(&self, sets: &[Vec<Relaxation>]) -> Vec<Solved> {
         let next = AtomicUsize::new(0);
         let done = Mutex::new(Vec::new());
         let work = || {

@@ -261,7 +261,10 @@ impl Relaxation {
             Self::WithoutGoal { object: Some(object) } => problem.goal.objects.retain(|goal| goal.object != *object),
             Self::WithoutGoal { object: None } => problem.goal.robot = None,
             Self::WithoutRule { index } => {
-                drop((*index < problem.steers.len()).then(|| problem.steers.remove(*index))?)
+                if *index >= problem.steers.len() {
+                    return None;
+                }
+                problem.steers.remove(*index);
             }
             Self::MoreTime { iterations } => problem.budget.iterations = Some(*iterations),
         }

@@ -52,7 +52,7 @@ impl<M: Manipulator> Primitive<Tabletop<M>> for Steered<Box<dyn Primitive<Tablet
         let mut here = from.clone();
         for instance in &chain {
             let after = instance.at(m, 1.0, &here);
-            if let Some(contract) = m.contract(instance.primitive).filter(|contract| contract.manipulates())
+            if let Some(contract) = m.contract(instance.primitive).copied().filter(Contract::manipulates)
                 && let Some(broken) = self.broken(m, contract, instance, (&here, &after))
             {
                 let place = here.robot.base;
@@ -71,7 +71,7 @@ impl<P> Steered<P> {
     fn broken<M: Manipulator>(
         &self,
         m: &Tabletop<M>,
-        contract: &Contract,
+        contract: Contract,
         instance: &Instance<Tabletop<M>>,
         (before, after): (&TabletopState<M>, &TabletopState<M>),
     ) -> Option<String> {

@@ -46,6 +46,7 @@ pub(in crate::plan_file) fn sample() -> PlanFile {
             restarts: 1,
             nodes: 5,
         },
+        partial: None,
         start: at,
         steps: vec![step],
     }
