@@ -138,7 +138,7 @@ impl Diagnosis {
 /// Finds out why a search found no plan.
 ///
 /// # Errors
-/// As [`prepare`](crate::planning::prepare).
+/// As [`prepare`].
 pub fn diagnose<M: TaskRobot>(
     registry: &Registry<M>,
     request: &PlanRequest,
@@ -196,7 +196,7 @@ fn remedies<M: TaskRobot>(registry: &Registry<M>, request: &PlanRequest, found: 
 /// What keeps a plan of the problem away, as far as a bounded number of tries tells.
 ///
 /// # Errors
-/// As [`prepare`](crate::planning::prepare).
+/// As [`prepare`].
 pub fn causes<M: TaskRobot>(registry: &Registry<M>, request: &PlanRequest) -> Result<Vec<Cause>, PlanningError> {
     looked_for(registry, request, false)
 }
