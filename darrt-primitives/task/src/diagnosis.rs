@@ -56,8 +56,9 @@ const TRIED_REMEDIES: usize = 16;
 const REMEDIES: usize = 3;
 /// Draws of the goal of the robot.
 const ROBOT_DRAWS: u64 = 32;
-/// Draws of the goal for each grasp that takes the object at the start.
-const GOAL_DRAWS: u64 = 8;
+/// Draws of the goal in all, for the grasps that take the object at the start; of fewer grasps nothing is said.
+const GOAL_DRAWS: u64 = 240;
+const LEAST_GRASPS: u64 = 4;
 
 /// What ended the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -338,10 +339,15 @@ impl<'a, M: Manipulator> Inquest<'a, M> {
         if needs_hand.into_iter().any(|goal| goal.grip != Grip::Released) {
             return None;
         }
+        let count = at_start.good.len() as u64;
+        if count < LEAST_GRASPS {
+            return None;
+        }
+        let tries = GOAL_DRAWS.div_ceil(count);
         let mut blockers = BTreeMap::<String, u64>::new();
         for (index, (case, _)) in at_start.good.iter().enumerate() {
-            for draw in 0..GOAL_DRAWS {
-                let seed = index as u64 * GOAL_DRAWS + draw;
+            for draw in 0..tries {
+                let seed = index as u64 * tries + draw;
                 let Some(pose) = self.look.goal_pose(id, seed) else { continue };
                 let case = Case { grasp: case.grasp, family: case.family, pose };
                 match self.look.sets_down(state, id, &case, seed) {
@@ -351,8 +357,8 @@ impl<'a, M: Manipulator> Inquest<'a, M> {
                 }
             }
         }
-        let (object, count) = (at_start.hands.object.clone(), at_start.good.len() as u64);
-        Some(Cause::NoCommonGrasp { object, at_start: count, tries: GOAL_DRAWS, blockers: ranked(blockers) })
+        let object = at_start.hands.object.clone();
+        Some(Cause::NoCommonGrasp { object, at_start: count, tries, blockers: ranked(blockers) })
     }
 
     /// Whether other objects, which may be moved, are in the way of all that would be good without them.
