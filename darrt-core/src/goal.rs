@@ -46,4 +46,10 @@ pub trait Goal<D: Domain>: Send + Sync {
 
     /// A target whose states lie in the goal set; `None` if the goal cannot be sampled.
     fn sample(&self, m: &D, rng: &mut dyn Rng) -> Option<PartialState<D>>;
+
+    /// How many parts of the goal `state` meets, for the best of a search that does not meet all of them; by default the goal
+    /// is one part.
+    fn parts_met(&self, m: &D, state: &State<D>) -> usize {
+        usize::from(self.is_satisfied(m, state))
+    }
 }

@@ -10,12 +10,14 @@ use crate::state::{ObjectId, RobotConfig, State};
 
 pub mod full;
 pub mod goal_biased;
+pub mod guided;
 pub mod placed;
 pub mod random_subset;
 pub mod robot_or_objects;
 
 pub use full::Full;
 pub use goal_biased::GoalBiased;
+pub use guided::Guided;
 pub use placed::Placed;
 pub use random_subset::RandomSubset;
 pub use robot_or_objects::RobotOrObjects;

@@ -31,8 +31,10 @@ use crate::verify::{Refusal, Solution};
 mod algorithm;
 pub mod connect;
 pub mod hierarchical;
+pub(crate) mod part;
 
 pub use algorithm::{Algorithm, Planner, Start};
+pub use part::Part;
 
 /// The parts of the search that are variants of one trait each.
 pub struct Strategy<D: Domain> {

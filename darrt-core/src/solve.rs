@@ -23,7 +23,8 @@ use crate::observe::accounts::Accounts;
 use crate::observe::{Event, Observer};
 use crate::plan::Plan;
 use crate::problem::Problem;
-use crate::search::{Algorithm, Planner, Start, Strategy};
+use crate::search::part::best_of;
+use crate::search::{Algorithm, Part, Planner, Start, Strategy};
 use crate::verify::{Refusal, Solution};
 
 /// How [`solve`] works.
@@ -128,6 +129,9 @@ pub struct Outcome<D: Domain> {
     pub elapsed: std::time::Duration,
     /// The last refusal of the verifier, if it refused any plan.
     pub last_refusal: Option<String>,
+    /// Without a solution, the beginning of one: the way to the best state found in which objects stand elsewhere than at the
+    /// start, all motions judged, but by no verifier. It meets the most [parts of the goal](crate::goal::Goal::parts_met).
+    pub part: Option<Plan<D>>,
 }
 
 // Not derived: that would ask the domain to be printable.
@@ -143,6 +147,7 @@ impl<D: Domain> fmt::Debug for Outcome<D> {
             .field("nearest_to_goal", &self.nearest_to_goal)
             .field("elapsed", &self.elapsed)
             .field("last_refusal", &self.last_refusal)
+            .field("part", &self.part)
             .finish()
     }
 }
@@ -157,6 +162,7 @@ struct Attempt<D: Domain> {
     nodes: usize,
     nearest_to_goal: f64,
     last_refusal: Option<String>,
+    parts: Vec<Part<D>>,
 }
 
 /// What an attempt has come upon so far.
@@ -323,8 +329,10 @@ impl<D: Domain> Shared<'_, D> {
             self.tell(&Event::Solved { attempt: number, iteration: planner.iteration() });
         }
         self.tell(&Event::AttemptEnded { attempt: number, stop });
+        let parts = if stop == Stop::Solved || self.is_overtaken(number) { Vec::new() } else { planner.parts() };
         Some(Attempt {
             number,
+            parts,
             solution: found.solution,
             stop,
             iterations: planner.iteration(),
@@ -391,7 +399,9 @@ impl<D: Domain> Shared<'_, D> {
             nearest_to_goal: f64::INFINITY,
             elapsed,
             last_refusal: None,
+            part: None,
         };
+        let mut parts = Vec::new();
         let mut attempts = self.done.into_inner().unwrap_or_default();
         attempts.sort_by_key(|a| a.number);
         // An attempt that was cut short decides, also when one with a higher number came to its own end before.
@@ -404,6 +414,7 @@ impl<D: Domain> Shared<'_, D> {
             outcome.nearest_to_goal = outcome.nearest_to_goal.min(attempt.nearest_to_goal);
             outcome.last_refusal = attempt.last_refusal.or(outcome.last_refusal);
             outcome.stop = attempt.stop;
+            parts.extend(attempt.parts);
             // Of those that were to be improved only the cheapest is left.
             if attempt.solution.is_some() {
                 outcome.solution = attempt.solution;
@@ -417,6 +428,10 @@ impl<D: Domain> Shared<'_, D> {
         }
         if outcome.solution.is_none() {
             outcome.stop = cut_short.unwrap_or(outcome.stop);
+            // Who cancels does not want to wait.
+            let strategy =
+                self.members.first().filter(|_| outcome.stop != Stop::Cancelled).map(|member| member.strategy);
+            outcome.part = strategy.and_then(|strategy| best_of(self.problem, strategy, self.options.seed, parts));
         }
         // The budget ended between two attempts.
         if outcome.stop == Stop::Restart {

@@ -132,7 +132,7 @@ pub enum GeomError {
         reason: String,
     },
     /// A mesh file has an ending no reader answers to.
-    #[error("{path} has the ending `{ending}`, but only `stl` and `obj` are read")]
+    #[error("{path} has the ending `{ending}`, but only `stl`, `obj`, `dae` and `glb` are read")]
     UnknownFormat {
         /// The file.
         path: String,

@@ -8,8 +8,10 @@ use parry3d_f64::shape::{ConvexPolyhedron, SharedShape};
 use parry3d_f64::transformation::try_convex_hull;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Most points a hull is made from.
+/// Most different points a hull is made from.
 pub const MAXIMUM_POINTS: usize = 100_000;
+/// Most points it is given, equal ones counted each: the corners of the largest mesh.
+const MAXIMUM_CORNERS: usize = 3 * crate::mesh::MAXIMUM_TRIANGLES;
 /// Smallest ratio of a hull's thinnest to its widest extent.
 pub const MINIMUM_THICKNESS_RATIO: f64 = 1e-3;
 /// How far, relative to its size, an input point may lie outside the finished hull.
@@ -27,16 +29,17 @@ impl ConvexHull {
     /// The hull of `points` (metres, own frame); `name` appears in error messages.
     ///
     /// # Errors
-    /// When there are fewer than 4 or more than [`MAXIMUM_POINTS`] points, a coordinate is not finite or beyond 1e4 m,
+    /// When there are fewer than 4 or more than [`MAXIMUM_POINTS`] different points, a coordinate is not finite or beyond 1e4 m,
     /// the points are thinner in some direction than [`MINIMUM_THICKNESS_RATIO`] of their extent, or rounding keeps
     /// the finished hull from holding every point.
     pub fn new(name: &str, points: &[Point3<f64>]) -> Result<Self, GeomError> {
-        check::count(format_args!("points of {name}"), points.len(), 4, MAXIMUM_POINTS)?;
+        check::count(format_args!("points of {name}"), points.len(), 4, MAXIMUM_CORNERS)?;
         for (i, p) in points.iter().enumerate() {
             check::point(format_args!("point {i} of {name}"), p)?;
         }
         let size = check_thickness(name, points)?;
         let distinct = without_duplicates(points, size * 1e-9);
+        check::count(format_args!("different points of {name}"), distinct.len(), 4, MAXIMUM_POINTS)?;
         let failed = |outlier| GeomError::UnsoundHull { name: name.to_owned(), outlier, maximum: TOLERANCE };
         let (vertices, triangles, polyhedron) = build(&distinct).ok_or_else(|| failed(1.0))?;
         let outlier = largest_outlier(&vertices, &triangles, &distinct) / size;

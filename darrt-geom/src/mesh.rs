@@ -1,5 +1,7 @@
 //! Triangle surfaces and the files they come from.
 
+mod dae;
+mod glb;
 mod read;
 
 use crate::check;
@@ -48,12 +50,15 @@ impl TriangleMesh {
         Ok(Self { vertices, triangles, parry: SharedShape::new(mesh) })
     }
 
-    /// Reads a mesh from an STL (ascii or binary) or OBJ file, chosen by the ending; each axis is multiplied by `scale`.
+    /// Reads a mesh from an STL (ascii or binary), OBJ, COLLADA (`dae`) or binary glTF (`glb`) file, chosen by the ending; each
+    /// axis is multiplied by `scale`.
     ///
-    /// Materials, normals and textures are ignored; OBJ polygons become fans of triangles; groups are merged.
+    /// Materials, normals and textures are ignored; polygons become fans of triangles; groups are merged. COLLADA and glTF are
+    /// scenes: every mesh is taken where its nodes place it, COLLADA in its `<unit>`. The axes are taken as they are, whichever of
+    /// them the file calls up: so do the readers that robot descriptions are written for.
     ///
     /// # Errors
-    /// When the ending is neither `stl` nor `obj`, the file is not a regular one, cannot be read, exceeds
+    /// When the ending is none of those, the file is not a regular one, cannot be read, exceeds
     /// [`MAXIMUM_FILE_BYTES`], is malformed, or its content is refused by [`Self::new`]; when an entry of `scale` is zero,
     /// not finite, or beyond 1e4.
     pub fn from_file(path: &Path, scale: &Vector3<f64>) -> Result<Self, GeomError> {

@@ -32,12 +32,12 @@ pub const PAYLOAD_KG: f64 = 1.8;
 pub const PUSH_FORCE_N: f64 = 30.0;
 /// Speeds of the arm's joints, radians per second: the caps with which `MoveIt` plans for the PR2, which are below those of its
 /// description.
-const JOINT_SPEED_RAD_PER_S: [f64; 7] = [1.0, 1.0, 1.5, 1.5, 1.5, 1.5, 1.12];
+pub(crate) const JOINT_SPEED_RAD_PER_S: [f64; 7] = [1.0, 1.0, 1.5, 1.5, 1.5, 1.5, 1.12];
 /// Metres and radians per second of the base with an empty hand: a careful indoor pace, half of the metre per second that the
 /// wheels can do.
-const BASE_SPEED: [f64; 2] = [0.5, 1.0];
+pub(crate) const BASE_SPEED: [f64; 2] = [0.5, 1.0];
 /// The same with something in the hand, at which simulated plates kept still between the fingers.
-const LOADED_BASE_SPEED: [f64; 2] = [0.3, 0.6];
+pub(crate) const LOADED_BASE_SPEED: [f64; 2] = [0.3, 0.6];
 /// Held objects are rounded up to this when travel is bounded, metres.
 const HELD_STEP: f64 = 0.05;
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use darrt_primitives::kinematics::{RobotDescription, folders_above};
 use darrt_primitives::manipulator::{Configuration, Hand};
+use darrt_task::clock::{Bounds, MotionLimits};
 use darrt_task::problem_file::{ArmSide, Limits, Robot as RobotSettings};
 use darrt_task::robot::{JointValues, RobotError, RobotFacts, TaskRobot};
 
@@ -12,7 +13,7 @@ use crate::arm::{ArmConfiguration, JOINT_NAMES, LimitKind, Side};
 use crate::gripper;
 use crate::model::{ModelError, Pr2Model, WholeBody, embedded_description};
 use crate::postures::ArmPosture;
-use crate::robot::{Gripper, PAYLOAD_KG, PUSH_FORCE_N, Pr2};
+use crate::robot::{BASE_SPEED, Gripper, JOINT_SPEED_RAD_PER_S, LOADED_BASE_SPEED, PAYLOAD_KG, PUSH_FORCE_N, Pr2};
 use crate::self_collision;
 
 /// The posture of an arm for which a problem names neither a posture nor joints.
@@ -32,19 +33,18 @@ impl From<ModelError> for RobotError {
 }
 
 /// The names of the postures, in the order of [`ArmPosture::ALL`].
-const POSTURES: [&str; ArmPosture::ALL.len()] = {
-    let mut names = [""; ArmPosture::ALL.len()];
-    let mut i = 0;
-    while i < names.len() {
-        names[i] = ArmPosture::ALL[i].name();
-        i += 1;
-    }
-    names
-};
+fn posture_names() -> Vec<String> {
+    ArmPosture::ALL.map(|posture| posture.name().to_owned()).to_vec()
+}
 
 impl TaskRobot for Pr2 {
-    const MODEL: &'static str = "pr2";
-    const POSTURES: &'static [&'static str] = &POSTURES;
+    fn models() -> Vec<String> {
+        vec!["pr2".to_owned()]
+    }
+
+    fn posture_names(_: &RobotSettings) -> Result<Vec<String>, RobotError> {
+        Ok(posture_names())
+    }
 
     fn build(settings: &RobotSettings) -> Result<(Self, ArmConfiguration), RobotError> {
         let model = match &settings.urdf {
@@ -96,10 +96,12 @@ impl TaskRobot for Pr2 {
             start,
             at_rest: Side::BOTH.map(finger).into_iter().zip(open).collect(),
             self_pairs: pairs.collect(),
+            is_bolted: false,
             pad_length_m: gripper::PAD_LENGTH,
             grip_force_n: Gripper.grip_force_n(),
             payload_kg: PAYLOAD_KG,
             push_force_n: PUSH_FORCE_N,
+            motion: motion_limits(),
         })
     }
 
@@ -113,6 +115,22 @@ impl TaskRobot for Pr2 {
 
     fn with_bases_from_reachability(self) -> Self {
         Self::with_bases_from_reachability(self)
+    }
+}
+
+/// The arm at the speeds and the base at the pace with which plans are compared too; accelerations and jerks, which no
+/// description of the PR2 has, as the defaults are.
+fn motion_limits() -> MotionLimits {
+    let defaults = MotionLimits::default();
+    let joints = Side::BOTH.map(|side| JOINT_NAMES.map(|name| format!("{}_{name}_joint", side.prefix())));
+    let speeds = joints.into_iter().flat_map(|joints| joints.into_iter().zip(JOINT_SPEED_RAD_PER_S));
+    let [drive, turn] = BASE_SPEED;
+    MotionLimits {
+        joint_velocities: speeds.collect(),
+        drive: Bounds { velocity: drive, ..defaults.drive },
+        turn: Bounds { velocity: turn, ..defaults.turn },
+        loaded_base_share: LOADED_BASE_SPEED[0] / drive,
+        ..defaults
     }
 }
 
@@ -157,6 +175,7 @@ fn arm_start(
         return joints.try_into().map_err(|_| RobotError::JointCount { key: joints_key, found, expected });
     }
     let Some(name) = posture else { return Ok(HOME.values(side)) };
-    let posture = ArmPosture::from_name(name).ok_or_else(|| RobotError::unknown_posture::<Pr2>(posture_key, name))?;
+    let posture =
+        ArmPosture::from_name(name).ok_or_else(|| RobotError::unknown_posture(posture_key, name, posture_names()))?;
     Ok(posture.values(side))
 }

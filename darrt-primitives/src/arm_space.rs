@@ -1,7 +1,5 @@
 //! The configuration space of base and arm: a bounded plane with heading, times the joints.
 
-use std::marker::PhantomData;
-
 use darrt_core::error::Error;
 use darrt_core::space::so2::turn;
 use darrt_core::space::{ComponentSpace, GroupSet, Se2};
@@ -22,7 +20,8 @@ pub struct ArmSpace<J> {
     base: Se2,
     limits: Vec<JointLimit>,
     weights_m: Vec<f64>,
-    joints: PhantomData<J>,
+    /// All joints at zero.
+    zeros: J,
 }
 
 impl<J: JointVector> ArmSpace<J> {
@@ -31,15 +30,17 @@ impl<J: JointVector> ArmSpace<J> {
     /// # Errors
     /// [`Error::Parameter`] for bounds that are not finite or inverted, or a wrong number of limits or weights.
     pub fn new(lower: [f64; 2], upper: [f64; 2], limits: &[JointLimit], weights_m: &[f64]) -> Result<Self, Error> {
-        for (name, found) in [("number of joint limits", limits.len()), ("number of joint weights", weights_m.len())] {
-            if found != J::COUNT {
-                let bound = "the number of joints of the arm";
-                return Err(Error::Parameter { name: name.to_owned(), value: found as f64, bound });
-            }
+        let wrong = |name: &str, found: usize| {
+            let bound = "the number of joints of the arm";
+            Error::Parameter { name: name.to_owned(), value: found as f64, bound }
+        };
+        let zeros = J::zeros(limits.len()).ok_or_else(|| wrong("number of joint limits", limits.len()))?;
+        if weights_m.len() != limits.len() {
+            return Err(wrong("number of joint weights", weights_m.len()));
         }
         // A turn of the base moves the hand, which is about half a metre away from the axis.
         let base = Se2::new(lower, upper, 0.5)?;
-        Ok(Self { base, limits: limits.to_vec(), weights_m: weights_m.to_vec(), joints: PhantomData })
+        Ok(Self { base, limits: limits.to_vec(), weights_m: weights_m.to_vec(), zeros })
     }
 
     /// The base's part.
@@ -50,6 +51,11 @@ impl<J: JointVector> ArmSpace<J> {
     /// The joint limits.
     pub fn limits(&self) -> &[JointLimit] {
         &self.limits
+    }
+
+    /// The arm with all joints at zero, which may be outside the limits.
+    pub fn zeros(&self) -> &J {
+        &self.zeros
     }
 
     /// Is one arm configuration within the limits?
@@ -88,7 +94,7 @@ impl<J: JointVector> ComponentSpace for ArmSpace<J> {
     type Config = Configuration<J>;
 
     fn dimension(&self) -> usize {
-        3 + J::COUNT
+        3 + self.limits.len()
     }
 
     fn contains(&self, q: &Configuration<J>) -> bool {
@@ -111,7 +117,7 @@ impl<J: JointVector> ComponentSpace for ArmSpace<J> {
 
     fn sample(&self, rng: &mut dyn Rng) -> Configuration<J> {
         let base = self.base.sample(rng);
-        let mut arm = J::zeros();
+        let mut arm = self.zeros;
         for (slot, limit) in arm.as_mut().iter_mut().zip(&self.limits) {
             let (lower, upper) = if limit.is_unlimited() {
                 (-std::f64::consts::PI, std::f64::consts::PI)

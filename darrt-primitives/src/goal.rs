@@ -172,7 +172,7 @@ impl<J: JointVector> RobotGoal<J> {
             (None, Some(_)) => ARM,
             (None, None) => return Some(target),
         };
-        let config = Configuration { base: self.base.unwrap_or_default(), arm: self.arm.unwrap_or_else(J::zeros) };
+        let config = Configuration { base: self.base.unwrap_or_default(), arm: self.arm.unwrap_or(*m.robot().zeros()) };
         Some(target.with_robot_groups(config, groups))
     }
 }
@@ -202,10 +202,28 @@ impl<J> TabletopGoal<J> {
     }
 }
 
+impl<J: JointVector> TabletopGoal<J> {
+    /// The goal for the robot alone, if there is one.
+    pub fn of_robot(&self) -> Option<Self> {
+        self.robot.is_some().then(|| Self { groups: Vec::new(), robot: self.robot.clone() })
+    }
+
+    /// Is the robot where it shall be?
+    pub fn is_robot_met<M: Manipulator<Joints = J>>(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> bool {
+        self.robot.as_ref().is_none_or(|goal| goal.is_met(m, state))
+    }
+}
+
 impl<M: Manipulator> Goal<Tabletop<M>> for TabletopGoal<M::Joints> {
     fn is_satisfied(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> bool {
         self.groups.iter().all(|alternatives| alternatives.iter().any(|goal| goal.is_met(state)))
-            && self.robot.as_ref().is_none_or(|goal| goal.is_met(m, state))
+            && self.is_robot_met(m, state)
+    }
+
+    /// The groups of which one alternative is met, and the robot.
+    fn parts_met(&self, m: &Tabletop<M>, state: &TabletopState<M>) -> usize {
+        let groups = self.groups.iter().filter(|alternatives| alternatives.iter().any(|goal| goal.is_met(state)));
+        groups.count() + usize::from(self.robot.as_ref().is_some_and(|goal| goal.is_met(m, state)))
     }
 
     fn sample(&self, m: &Tabletop<M>, rng: &mut dyn Rng) -> Option<PartialState<Tabletop<M>>> {

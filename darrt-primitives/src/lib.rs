@@ -2,7 +2,7 @@
 //!
 //! | question | file |
 //! |---|---|
-//! | what must a robot offer? | [`manipulator`], [`kinematics`] |
+//! | what must a robot offer? | [`manipulator`], [`joints`], [`kinematics`] |
 //! | where can robot and objects be? | [`arm_space`], [`object_space`], [`tabletop`] |
 //! | what is held, what rests on what? | [`mode`] |
 //! | which primitives are there, and what do they promise? | [`primitive`], [`contract`] |
@@ -32,6 +32,7 @@ pub mod error;
 pub mod execution_time;
 pub mod goal;
 pub mod grasp;
+pub mod joints;
 pub mod kinematics;
 pub mod laws;
 mod leg;

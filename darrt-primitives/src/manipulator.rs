@@ -10,20 +10,23 @@ use rand::Rng;
 
 use crate::kinematics::JointLimit;
 
-/// The values of an arm's joints: any fixed-size array of `f64`.
+/// The values of an arm's joints: an array of `f64` for an arm whose number of joints is known when the program is compiled,
+/// [`Joints`](crate::joints::Joints) for one that comes as a file.
 pub trait JointVector: AsRef<[f64]> + AsMut<[f64]> + Copy + PartialEq + Debug + Send + Sync + 'static {
-    /// How many joints.
-    const COUNT: usize;
+    /// These values; `None` when there are more or fewer than this vector can have.
+    fn from_values(values: &[f64]) -> Option<Self>;
 
-    /// All joints at zero.
-    fn zeros() -> Self;
+    /// So many joints at zero; `None` as for [`JointVector::from_values`].
+    fn zeros(count: usize) -> Option<Self>;
 }
 
 impl<const N: usize> JointVector for [f64; N] {
-    const COUNT: usize = N;
+    fn from_values(values: &[f64]) -> Option<Self> {
+        values.try_into().ok()
+    }
 
-    fn zeros() -> Self {
-        [0.0; N]
+    fn zeros(count: usize) -> Option<Self> {
+        (count == N).then_some([0.0; N])
     }
 }
 

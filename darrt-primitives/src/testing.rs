@@ -1,6 +1,7 @@
 //! Support for tests of robots and table-top instances (feature `testing`): a robot to read and copy, a table, an
 //! oracle, deliberate law-breakers and proptest strategies.
 
+pub mod arms;
 pub mod broken;
 pub mod gantry;
 pub mod scene_oracle;

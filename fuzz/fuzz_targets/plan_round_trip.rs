@@ -105,8 +105,10 @@ impl PlanSketch {
                 nodes: self.counts[2],
             },
             contracts,
+            partial: None,
             start: self.start.waypoint(),
             steps: self.steps.iter().map(StepSketch::step).collect(),
+            timing: None,
         }
     }
 }

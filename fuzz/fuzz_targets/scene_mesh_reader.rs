@@ -1,14 +1,24 @@
 //! Mesh files: refused, or a sound mesh that can be used as a shape.
 //!
-//! The first byte of an input says how it is read: `o` an OBJ file, `s` an STL file, anything else corners and triangles.
+//! The first byte of an input says how it is read: `o` an OBJ file, `s` an STL file, `d` a COLLADA file, `g` a GLB file, anything
+//! else corners and triangles.
 #![no_main]
 
 use std::path::PathBuf;
 
 use arbitrary::{Arbitrary, Unstructured};
+use darrt_fuzz::text::text;
 use darrt_geom::{Body, GeomError, Shape, TriangleMesh};
 use libfuzzer_sys::fuzz_target;
 use nalgebra::{Point3, Vector3};
+
+const COLLADA: &[&str] = &[include_str!("../seeds/scene_mesh_reader/square_dae")];
+
+/// The bytes, or a file with edits.
+fn edited(bytes: &[u8], files: &[&str]) -> Vec<u8> {
+    // The seed begins with the byte that says how it is read.
+    text(bytes, files).trim_start_matches('d').as_bytes().to_vec()
+}
 
 /// Corners, triangles.
 type Soup = (Vec<[f64; 3]>, Vec<[u16; 3]>);
@@ -40,6 +50,8 @@ fuzz_target!(|data: &[u8]| {
     let mesh = match kind {
         b'o' => read("obj", bytes).ok(),
         b's' => read("stl", bytes).ok(),
+        b'd' => read("dae", &edited(bytes, COLLADA)).ok(),
+        b'g' => read("glb", bytes).ok(),
         _ => assemble(bytes),
     };
     let Some(mesh) = mesh else { return };

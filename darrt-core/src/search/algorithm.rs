@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::connect::Connect;
 use super::hierarchical::Hierarchical;
-use super::{Darrt, Step, Strategy};
+use super::{Darrt, Part, Step, Strategy};
 use crate::budget::Interrupt;
 use crate::domain::Domain;
 use crate::observe::accounts::Accounts;
@@ -34,6 +34,11 @@ pub trait Planner<D: Domain> {
 
     /// Metres from a sample of the goal to the nearest state so far; infinite if the goal has no samples.
     fn nearest_to_goal(&self) -> f64;
+
+    /// The ways to the best states reached, the best first, for the time when there is no plan; by default none are known.
+    fn parts(&self) -> Vec<Part<D>> {
+        Vec::new()
+    }
 }
 
 /// Where an attempt begins: what [`Darrt::new`] asks for besides problem and strategy.
@@ -138,5 +143,9 @@ impl<D: Domain> Planner<D> for Darrt<'_, D> {
 
     fn nearest_to_goal(&self) -> f64 {
         self.nearest_to_goal()
+    }
+
+    fn parts(&self) -> Vec<Part<D>> {
+        self.parts()
     }
 }

@@ -11,7 +11,7 @@
 
 use std::sync::Arc;
 
-use super::{Darrt, Grown, Planner, Start, Step, Strategy};
+use super::{Darrt, Grown, Part, Planner, Start, Step, Strategy};
 use crate::domain::Domain;
 use crate::extend::Extension;
 use crate::motion::Reversed;
@@ -274,6 +274,10 @@ impl<D: Domain> Planner<D> for Connect<'_, D> {
 
     fn nearest_to_goal(&self) -> f64 {
         self.forward.nearest_to_goal()
+    }
+
+    fn parts(&self) -> Vec<Part<D>> {
+        self.forward.parts()
     }
 }
 

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use rand::Rng;
 
 use super::connect::Connect;
-use super::{Darrt, Planner, Start, Step, Strategy};
+use super::{Darrt, Part, Planner, Start, Step, Strategy};
 use crate::domain::Domain;
 use crate::goal::{Goal, Reach};
 use crate::observe::accounts::Accounts;
@@ -252,5 +252,10 @@ impl<D: Domain> Planner<D> for Hierarchical<'_, D> {
 
     fn nearest_to_goal(&self) -> f64 {
         self.alone.as_ref().map_or_else(|| self.whole.nearest_to_goal(), |alone| alone.nearest_to_goal())
+    }
+
+    fn parts(&self) -> Vec<Part<D>> {
+        // The parts of the others begin elsewhere, or have no robot.
+        self.alone.as_ref().map_or_else(Vec::new, |alone| alone.parts())
     }
 }

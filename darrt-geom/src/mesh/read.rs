@@ -1,5 +1,7 @@
-//! STL and OBJ files as triangle soups, bounded in size and never panicking.
+//! Mesh files as triangle soups, bounded in size and never panicking: STL and OBJ here, COLLADA and GLB next door.
 
+use super::dae::dae;
+use super::glb::glb;
 use super::{MAXIMUM_FILE_BYTES, MAXIMUM_TRIANGLES};
 use crate::bounded_file::read_bytes;
 use crate::check;
@@ -22,6 +24,8 @@ pub(super) fn soup(path: &Path) -> Result<Soup, GeomError> {
     let parse = match ending.as_str() {
         "stl" => stl,
         "obj" => obj,
+        "dae" => dae,
+        "glb" => glb,
         _ => return Err(GeomError::UnknownFormat { path: shown, ending }),
     };
     parse(&shown, &read_bytes(path, MAXIMUM_FILE_BYTES)?)
@@ -172,7 +176,7 @@ fn keep(line: &str, kept: &mut String) {
 }
 
 /// Adds a triangle with three vertices of its own.
-fn push(shown: &str, soup: &mut Soup, corners: [Point3<f64>; 3]) -> Result<(), GeomError> {
+pub(super) fn push(shown: &str, soup: &mut Soup, corners: [Point3<f64>; 3]) -> Result<(), GeomError> {
     check::count(format_args!("triangles of {shown}"), soup.triangles.len() + 1, 1, MAXIMUM_TRIANGLES)?;
     // Bounded by the line above, so the index fits.
     let first = u32::try_from(soup.vertices.len()).unwrap_or(u32::MAX);

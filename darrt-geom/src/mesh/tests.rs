@@ -1,3 +1,5 @@
+use super::dae::dae;
+use super::glb::glb;
 use super::read::{obj, stl};
 use super::*;
 use crate::bounded_file::FileError;
@@ -62,7 +64,7 @@ fn files_are_read_scaled_and_checked() {
     assert_eq!(mesh.vertices().iter().map(|p| p.x).fold(0.0, f64::max), 2.0);
     assert!(TriangleMesh::from_file(&path, &Vector3::zeros()).is_err());
     let refused = |name: &str| TriangleMesh::from_file(&folder.path().join(name), &Vector3::repeat(1.0)).unwrap_err();
-    assert!(matches!(refused("a.dae"), GeomError::UnknownFormat { .. }));
+    assert!(matches!(refused("a.ply"), GeomError::UnknownFormat { .. }));
     assert!(matches!(refused("none.obj"), GeomError::File(FileError::Unreadable { .. })));
     std::fs::create_dir(folder.path().join("folder.obj")).unwrap();
     assert!(matches!(refused("folder.obj"), GeomError::File(FileError::NotAFile { .. })));
@@ -155,5 +157,121 @@ proptest! {
             let theirs = Point3::from(theirs.0.map(f64::from));
             prop_assert!((corner - theirs).norm() < 1e-4);
         }
+    }
+}
+
+/// A square in centimetres, once as two triangles and once as a polygon, shown by two nodes.
+const COLLADA: &str = r##"<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="0.01" name="cm"/><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="s"><float_array id="a" count="12">0 0 0  100 0 0  100 100 0  0 100 0</float_array>
+<technique_common><accessor source="#a" count="4" stride="3"><param name="X"/><param name="Y"/><param name="Z"/></accessor>
+</technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#s"/></vertices>
+<triangles count="2"><input semantic="NORMAL" source="#s" offset="1"/><input semantic="VERTEX" source="#v" offset="0"/>
+<p>0 0 1 0 2 0  0 0 2 0 3 0</p></triangles>
+<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/><vcount>4</vcount><p>0 1 2 3</p></polylist>
+<lines count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1</p></lines>
+</mesh></geometry></library_geometries>
+<library_nodes><node id="far"><translate>0 0 500</translate><instance_geometry url="#g"/></node></library_nodes>
+<library_visual_scenes><visual_scene id="scene">
+<node><rotate>0 0 1 90</rotate><scale>2 1 1</scale><instance_geometry url="#g"/></node>
+<node><instance_node url="#far"/></node>
+</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#scene"/></scene>
+</COLLADA>"##;
+
+#[test]
+fn collada_is_placed_by_its_nodes_in_metres() {
+    let soup = dae("a.dae", COLLADA.as_bytes()).unwrap();
+    assert_eq!(soup.triangles.len(), 8);
+    let has = |x: f64, y: f64, z: f64| soup.vertices.iter().any(|p| (p - Point3::new(x, y, z)).norm() < 1e-12);
+    // Scaled, then turned.
+    assert!(has(0.0, 2.0, 0.0) && has(-1.0, 2.0, 0.0));
+    assert!(has(1.0, 1.0, 5.0) && has(0.0, 0.0, 5.0));
+}
+
+#[test]
+fn what_is_wrong_with_collada_is_told_with_its_line() {
+    let broken = |from: &str, to: &str| {
+        assert!(COLLADA.contains(from), "{from}");
+        dae("bad.dae", COLLADA.replace(from, to).as_bytes()).unwrap_err().to_string()
+    };
+    for (from, to, line, told) in [
+        ("<p>0 0 1 0 2 0", "<p>0 0 1 0 9 0", 9, "vertex 9, but only 4 exist"),
+        ("<p>0 1 2 3</p>", "<p>0 1 2</p>", 11, "<vcount> tells of more corners"),
+        ("<vcount>4</vcount>", "<vcount>3</vcount>", 11, "<vcount> tells of 3 corners, <p> has 4"),
+        ("100 100 0", "100 one 0", 5, "\"one\" is no number here"),
+        ("count=\"4\" stride", "count=\"5\" stride", 6, "5 points, 3 numbers apart"),
+        ("url=\"#far\"", "url=\"#near\"", 17, "points to \"#near\", which is no <node>"),
+        ("meter=\"0.01\"", "meter=\"0\"", 3, "`meter` is \"0\""),
+        ("<rotate>0 0 1 90", "<rotate>0 0 1", 16, "<rotate> needs 4 finite numbers and has 3"),
+        ("<translate>0 0 500</translate>", "<instance_node url=\"#far\"/>", 14, "holds itself"),
+        ("<translate>0 0 500</translate>", "<skew>0</skew>", 14, "<skew> is not read"),
+    ] {
+        let message = broken(from, to);
+        assert!(message.contains(told) && message.contains(&format!("line {line}:")), "{message}");
+    }
+    for bytes in [&b""[..], b"<a>", b"\xff", b"<COLLADA/>", b"<!DOCTYPE a><COLLADA/>"] {
+        assert!(dae("bad.dae", bytes).unwrap_err().to_string().contains("bad.dae"));
+    }
+}
+
+/// A GLB of one triangle with indices, shown by a node that is moved.
+fn one_triangle_glb(json: &str) -> Vec<u8> {
+    let mut blob: Vec<u8> = Vec::new();
+    for value in [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+        blob.extend(value.to_le_bytes());
+    }
+    for index in [0_u16, 1, 2, 0] {
+        blob.extend(index.to_le_bytes());
+    }
+    let mut json = json.as_bytes().to_vec();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let length = 12 + 8 + json.len() + 8 + blob.len();
+    let word = |value: usize| u32::try_from(value).unwrap().to_le_bytes();
+    let mut bytes = [b"glTF".as_slice(), &word(2), &word(length), &word(json.len()), b"JSON", &json].concat();
+    bytes.extend(word(blob.len()));
+    bytes.extend(b"BIN\0");
+    bytes.extend(blob);
+    bytes
+}
+
+const GLTF: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"translation":[0,0,3],"children":[1]},{"mesh":0,"scale":[2,1,1]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],
+"buffers":[{"byteLength":44}]}"#;
+
+#[test]
+fn glb_is_placed_by_its_nodes() {
+    let soup = glb("a.glb", &one_triangle_glb(GLTF)).unwrap();
+    let expected = [[0.0, 0.0, 3.0], [2.0, 0.0, 3.0], [0.0, 1.0, 3.0]].map(Point3::from);
+    assert_eq!((soup.vertices, soup.triangles), (expected.to_vec(), vec![[0, 1, 2]]));
+}
+
+#[test]
+fn what_is_wrong_with_a_glb_is_told() {
+    for (from, to, told) in [
+        ("\"byteLength\":36}", "\"byteLength\":35}", "do not lie in its buffer view"),
+        ("\"byteOffset\":36", "\"byteOffset\":40", "do not lie in its buffer view"),
+        ("\"byteOffset\":36", "\"byteOffset\":18446744073709551615", ""),
+        ("\"byteOffset\":36", "\"byteOffset\":10", "names a vertex that does not exist"),
+        ("\"count\":3,\"type\":\"SCALAR\"", "\"count\":2,\"type\":\"SCALAR\"", "no multiple of 3"),
+        ("\"mesh\":0", "\"mesh\":7", ""),
+        ("\"mesh\":0", "\"mesh\":0,\"children\":[0]", "holds itself"),
+        ("\"scene\":0", "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"scene\":0", ""),
+        ("{\"byteLength\":44}", "{\"byteLength\":44,\"uri\":\"a.bin\"}", "outside of the file"),
+    ] {
+        assert!(GLTF.contains(from), "{from}");
+        let message = glb("bad.glb", &one_triangle_glb(&GLTF.replace(from, to))).unwrap_err().to_string();
+        assert!(message.contains("bad.glb") && message.contains(told), "{message}");
+    }
+    let whole = one_triangle_glb(GLTF);
+    for cut in 0..whole.len() {
+        assert!(glb("bad.glb", &whole[..cut]).is_err(), "{cut}");
     }
 }

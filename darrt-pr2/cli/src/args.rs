@@ -31,16 +31,22 @@ Examples:
   darrt plan plate3                   solve one; writes plate3.plan.json and plate3.html
   darrt show plate3.plan.json         draw a plan again
   darrt check plate3.plan.json        judge a plan, for example one edited by hand
+  darrt export plate3.plan.json --to json
+                                      the plan on its clock, for a controller
+  darrt execute plate3.plan.json --noise 0.5
+                                      a hundred times in physics, with half the errors of a real robot
   darrt bench                         the paper's table: every problem, ten seeds
   darrt problems --print plate3 > mine.toml
                                       copy a problem, edit it, then: darrt plan mine.toml
 
 Exit codes:
   0    solved, or the plan is accepted
-  1    not solved within the budget
+  1    not solved within the budget; a plan that is executed fails in some run
   2    bad input or usage
   3    the verifier refuses the plan; with `check --strict` also a plan with warnings
   4    the output cannot be written
+  5    not solved within the budget, and the beginning of a plan is written (PROBLEM.partial.json);
+       with `check`: the plan is such a beginning, and right
   130  interrupted";
 
 /// The commands.
@@ -48,13 +54,21 @@ Exit codes:
 pub enum Command {
     /// Solve a problem: print the steps, write the plan and a picture
     Plan(PlanOptions),
+    /// Find out with which changes a problem has a plan
+    Explain(ExplainOptions),
     /// Judge a plan file with the verifier
     Check(CheckOptions),
+    /// Execute a plan in physics: free objects, fingers of limited force, errors of perception and motion
+    Execute(ExecuteOptions),
     /// List the built-in problems, or print one to copy and edit
     Problems(ProblemsOptions),
     /// Draw a problem or a plan
     Show(ShowOptions),
-    /// Print the JSON Schema of problem files or plan files
+    /// Write a plan on its clock for controllers and other programs: joint trajectories, tables, recordings
+    Export(ExportOptions),
+    /// Robots that come as files: list those inside, check one, or begin one for a description
+    Robot(RobotOptions),
+    /// Print the JSON Schema of problem files, plan files or robot files
     Schema(SchemaOptions),
     /// Make problems like a given one: places, sizes and heights drawn at random
     Generate(GenerateOptions),
@@ -95,6 +109,9 @@ moves: with less of it the base alone may go farther.";
 pub struct PlanOptions {
     /// Name of a built-in problem, or a problem file
     pub problem: String,
+    /// Plan for this robot instead of the problem's: a robot file, or a name of `darrt robot list`
+    #[arg(long, value_name = "FILE|NAME")]
+    pub robot: Option<String>,
     /// Seed of every random choice
     #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
     pub seed: u64,
@@ -142,12 +159,47 @@ pub struct PlanOptions {
     /// Print where the attempts of every primitive ended, and which bodies were in the way
     #[arg(long)]
     pub stats: bool,
+    /// Begin with this plan, for the same problem or for one much like it: its first steps that are still right are kept
+    #[arg(long, value_name = "PLAN")]
+    pub from: Option<PathBuf>,
+    /// Keep so many steps of that plan, not as many as can be [`--at` is the same: plan on from behind this step]
+    #[arg(long, value_name = "STEPS", requires = "from", visible_alias = "at", value_parser = any_count, allow_hyphen_values = true)]
+    pub keep: Option<u64>,
+    /// Where there is no plan, write down why as JSON
+    #[arg(long, value_name = "FILE")]
+    pub why: Option<PathBuf>,
     /// Print nothing but errors
     #[arg(short, long, conflicts_with = "stats")]
     pub quiet: bool,
     /// Margins in the place of those of the problem.
     #[command(flatten)]
     pub safety: SafetyOptions,
+}
+
+const EXPLAIN_NOTES: &str = "\
+Plans the problem as it is, and then with changes: without an obstacle, with a smaller one, with wider limits, with
+another primitive, without a part of the goal, with more iterations; then without several obstacles, and with two
+changes. Every plan that is told was verified. All cores are used, and no clock: the same problem and seed have the
+same answer. Exit code 1: none of the changed problems has a plan.";
+
+/// Options of `darrt explain`.
+#[derive(Debug, Args)]
+#[command(after_help = EXPLAIN_NOTES)]
+pub struct ExplainOptions {
+    /// Name of a built-in problem, or a problem file
+    pub problem: String,
+    /// Seed of every random choice
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
+    pub seed: u64,
+    /// Iterations for each changed problem
+    #[arg(long, default_value_t = 1000, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true)]
+    pub iterations: u64,
+    /// Problems that are planned at the same time, 1 to 256 [default: one for each core]
+    #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Print the answer as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Options of `darrt check`.
@@ -173,6 +225,47 @@ pub struct CheckOptions {
     pub quiet: bool,
 }
 
+const EXECUTE_EXAMPLES: &str = "\
+Examples:
+  darrt execute plate3.plan.json                    once, in a world that is as the plan has it
+  darrt execute plate3.plan.json --noise 1          100 times, with the errors of a real robot
+  darrt execute plate3.plan.json --noise mine.toml  with errors of your own
+  darrt execute --print-noise > mine.toml           the errors of a real robot, to copy and edit
+
+The plan is executed as it is, open loop. A run succeeds if every object ends at its goal, within the
+tolerance of the problem, and nothing else was moved. The first departure from the plan is told as the
+cause of a failure. The same plan, noise and seed give the same runs with any number of threads.";
+
+/// Options of `darrt execute`.
+#[derive(Debug, Args)]
+#[command(after_help = EXECUTE_EXAMPLES)]
+pub struct ExecuteOptions {
+    /// The plan file
+    #[arg(required_unless_present = "print_noise")]
+    pub plan: Option<PathBuf>,
+    /// Errors of the world and the robot: a part of those of a real robot, 0 to 1, or a file
+    #[arg(long, value_name = "FILE|0..1", default_value = "0", allow_hyphen_values = true)]
+    pub noise: String,
+    /// How often [default: once without noise, else 100 times]
+    #[arg(long, value_name = "NUMBER", value_parser = run_count, allow_hyphen_values = true)]
+    pub runs: Option<u64>,
+    /// Seed of the errors
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
+    pub seed: u64,
+    /// Runs at the same time [default: one on every core]
+    #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Print all runs, with where the objects were after every step, as one JSON object
+    #[arg(long, conflicts_with = "quiet")]
+    pub json: bool,
+    /// Print the noise of a real robot as a file, and execute nothing
+    #[arg(long, exclusive = true)]
+    pub print_noise: bool,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
 /// Options of `darrt problems`.
 #[derive(Debug, Args)]
 pub struct ProblemsOptions {
@@ -192,6 +285,110 @@ pub struct ShowOptions {
     /// Leave out the small view of every step
     #[arg(long)]
     pub overview: bool,
+}
+
+const EXPORT_EXAMPLES: &str = "\
+Examples:
+  darrt export plate3.plan.json --to json           trajectories by group: arm, base, gripper
+  darrt export plate3.plan.json --to mcap           a recording to look at in Foxglove
+  darrt export old.plan.json --to plan -o new.plan.json
+                                                    a plan without a clock gets one
+
+The plan is judged first; what is refused is not exported (exit code 3).";
+
+/// Options of `darrt export`.
+#[derive(Debug, Args)]
+#[command(after_help = EXPORT_EXAMPLES)]
+pub struct ExportOptions {
+    /// The plan file
+    pub plan: PathBuf,
+    /// What to write
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub to: ExportFormat,
+    /// Write it here [default: beside the plan, with an ending of its own]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Samples per second, 1 to 1000; there are more where the motion changes
+    #[arg(long, default_value_t = 50.0, value_name = "HZ", value_parser = rate, allow_hyphen_values = true)]
+    pub rate: f64,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// What `darrt export` writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ExportFormat {
+    /// The plan file with its clock
+    Plan,
+    /// Trajectories by group of joints, commands to the hand, sensing points: fields as in `trajectory_msgs`
+    Json,
+    /// The same as YAML
+    Yaml,
+    /// One `moveit_msgs/RobotTrajectory` as JSON
+    Moveit,
+    /// A table: one line per sample
+    Csv,
+    /// A recording: joint states, frames and events
+    Mcap,
+}
+
+/// Options of `darrt robot`.
+#[derive(Debug, Args)]
+pub struct RobotOptions {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: RobotCommand,
+}
+
+/// What `darrt robot` does.
+#[derive(Debug, Subcommand)]
+pub enum RobotCommand {
+    /// List the robots inside, or print one's robot file or description to copy and edit
+    List(RobotListOptions),
+    /// Read a robot file as planning would, try the robot, draw it, and say what is odd
+    Check(RobotCheckOptions),
+    /// Write a first robot file for a description (URDF), with guesses to look at
+    New(RobotNewOptions),
+}
+
+/// Options of `darrt robot list`.
+#[derive(Debug, Args)]
+pub struct RobotListOptions {
+    /// Print the robot file of this robot
+    #[arg(long, value_name = "NAME")]
+    pub print: Option<String>,
+    /// Print the description of this robot
+    #[arg(long, value_name = "NAME", conflicts_with = "print")]
+    pub print_urdf: Option<String>,
+}
+
+/// Options of `darrt robot check`.
+#[derive(Debug, Args)]
+pub struct RobotCheckOptions {
+    /// A robot file, or a name of `darrt robot list`
+    #[arg(value_name = "FILE|NAME")]
+    pub robot: String,
+    /// Write a first problem for it here
+    #[arg(long, value_name = "FILE")]
+    pub problem: Option<PathBuf>,
+    /// Draw it here: .html (3-D), .svg, .png or .glb [default: NAME.robot.html in the current folder]
+    #[arg(long, value_name = "FILE", conflicts_with = "no_picture")]
+    pub picture: Option<PathBuf>,
+    /// Draw no picture
+    #[arg(long)]
+    pub no_picture: bool,
+}
+
+/// Options of `darrt robot new`.
+#[derive(Debug, Args)]
+pub struct RobotNewOptions {
+    /// The description
+    #[arg(value_name = "URDF")]
+    pub urdf: PathBuf,
+    /// Write the robot file here [default: beside the description, .toml]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
 }
 
 /// Options of `darrt schema`.
@@ -293,6 +490,10 @@ pub enum SchemaKind {
     Problem,
     /// Plan files (JSON)
     Plan,
+    /// Robot files (TOML)
+    Robot,
+    /// Why there is no plan, as `darrt plan --why` writes it (JSON)
+    Diagnosis,
 }
 
 /// A whole number from `least` to `most`, in a message that says so whatever is wrong.
@@ -310,6 +511,10 @@ fn positive(text: &str) -> Result<u64, String> {
     whole(text, 1, u64::MAX)
 }
 
+fn run_count(text: &str) -> Result<u64, String> {
+    whole(text, 1, 1_000_000)
+}
+
 fn threads(text: &str) -> Result<usize, String> {
     whole(text, 1, MOST_THREADS).and_then(|count| usize::try_from(count).map_err(|error| error.to_string()))
 }
@@ -322,6 +527,12 @@ fn seeds(text: &str) -> Result<Range<u64>, String> {
     };
     let range = range.filter(|range: &Range<u64>| !range.is_empty());
     range.ok_or_else(|| "must be a count above 0, or A..B with A below B".to_owned())
+}
+
+/// Samples per second.
+fn rate(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|value: &f64| (1.0..=1000.0).contains(value));
+    value.ok_or_else(|| "must be a number from 1 to 1000".to_owned())
 }
 
 /// A positive time in seconds.

@@ -1,53 +1,47 @@
 //! Says in words why no plan was found.
 
-use std::fmt::Write as _;
 use std::time::Duration;
 
 use darrt_core::budget::Stop;
 use darrt_core::observe::accounts::{Accounts, Bucket};
 use darrt_primitives::surroundings::NearPair;
 
+use darrt_task::diagnosis::{Diagnosis, Outcome};
 use darrt_task::planning::PlanResult;
 use darrt_task::text::counted;
 
+pub(crate) mod words;
+
 /// Pairs of bodies that are named.
 const PAIRS: usize = 3;
-
-/// With fewer iterations nothing is said of what was in the way.
-const FEW: u64 = 10;
+/// Lines in all, the first one and the advice among them.
+const LINES: usize = 10;
 
 /// Buckets of extensions in which a primitive was not even tried.
 const UNTRIED: [Bucket; 3] = [Bucket::NotUseful, Bucket::NotChosen, Bucket::Budget];
 
-/// Several lines: why it stopped, how near it came, what was in the way, which primitive never worked, what may help.
-pub(crate) fn explain(result: &PlanResult) -> String {
-    let mut text = format!(
-        "{} after {}, {}, {}, largest tree {}",
-        result.stop,
-        seconds(result.elapsed),
-        counted(result.iterations, "iteration"),
-        counted(result.restarts, "restart"),
-        counted(result.nodes as u64, "node")
-    );
-    let mut line = |words: String| {
-        // Writing to a string cannot fail.
-        let _ = write!(text, "\n  {words}");
-    };
-    for doubt in &result.doubts {
-        line(format!("likely the reason: {doubt}"));
+/// At most ten lines: what ended the search, what keeps a plan away, and what may help.
+pub(crate) fn explain(result: &PlanResult, diagnosis: &Diagnosis) -> String {
+    let first =
+        format!("{} after {}, {}", result.stop, seconds(result.elapsed), counted(result.iterations, "iteration"));
+    let mut lines: Vec<_> = diagnosis.causes.iter().flat_map(words::of_cause).collect();
+    let last = advice(result, diagnosis);
+    let room = LINES - 1 - last.len() - usize::from(result.partial.is_some());
+    if lines.len() > room {
+        let more = lines.len() - (room - 1);
+        lines.truncate(room - 1);
+        lines.push(format!("and {more} more, with --stats or --why"));
     }
-    if result.iterations < FEW {
-        line("so few iterations say nothing about the problem".to_owned());
-    } else {
-        what_was_met(result).into_iter().for_each(&mut line);
-    }
-    if let Some(refusal) = &result.last_refusal {
-        line(format!("a plan was found, but the verifier refused it: {refusal}"));
-    }
-    if let Some(advice) = advice(result.stop) {
-        line(advice.to_owned());
-    }
-    text
+    std::iter::once(first).chain(lines).chain(last).collect::<Vec<_>>().join("\n  ")
+}
+
+/// All causes, however many, and what the search itself met: what is printed for `--stats`.
+pub(crate) fn details(result: &PlanResult, diagnosis: &Diagnosis) -> String {
+    let mut lines = vec!["what keeps a plan away, and what the search met:".to_owned()];
+    lines.extend(diagnosis.causes.iter().flat_map(words::of_cause));
+    lines.extend(result.doubts.iter().map(|doubt| format!("before the search: {doubt}")));
+    lines.extend(what_was_met(result));
+    lines.join("\n  ")
 }
 
 /// How near it came, what was in the way, which primitive never worked.
@@ -98,28 +92,50 @@ fn never_worked(accounts: &Accounts) -> Vec<String> {
     accounts.rows().filter_map(describe).collect()
 }
 
-const fn advice(stop: Stop) -> Option<&'static str> {
-    match stop {
-        Stop::TimeLimit => Some("another --seed, a longer --time-limit or a --restart may help; --stats tells more"),
-        Stop::IterationLimit => Some("another --seed or more --iterations may help; --stats tells more"),
-        Stop::NodeLimit => Some("a --restart or a higher `budget.nodes` in the problem may help; --stats tells more"),
-        _ => None,
-    }
+/// What may help: more time only where nothing was found that keeps a plan away.
+fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> {
+    let limit = match result.stop {
+        Stop::TimeLimit => "a longer --time-limit",
+        Stop::IterationLimit => "more --iterations",
+        Stop::NodeLimit => "a higher `budget.nodes` in the problem",
+        _ => return Vec::new(),
+    };
+    let progress = diagnosis.nearest_to_goal_m.map_or_else(String::new, |metres| {
+        format!(" (nearest so far: {metres:.2} m to move, in {})", counted(result.nodes as u64, "state"))
+    });
+    let remedies: Vec<_> = diagnosis.remedies.iter().map(words::of_relaxation).collect();
+    let would_help = format!("it would help, as far as a few tries tell: {}", remedies.join("; or "));
+    let mut lines: Vec<_> = (!remedies.is_empty()).then_some(would_help).into_iter().collect();
+    lines.push(match diagnosis.outcome {
+        Outcome::Hopeless => {
+            "more time or another seed will hardly help; `darrt explain` looks for changes that make a plan".to_owned()
+        }
+        Outcome::TooShort => format!(
+            "nothing was found that keeps a plan away, and {} say nothing{progress}: {limit} will help",
+            counted(result.iterations, "iteration")
+        ),
+        Outcome::MayBeFound => format!(
+            "nothing was found that keeps a plan away: each object can be taken and brought to its goal by itself{progress}. \
+             Another --seed, {limit} or a --restart may help"
+        ),
+    });
+    lines
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use darrt_task::diagnosis::cause::Cause;
 
-    #[test]
-    fn the_words_name_reason_distance_and_the_primitive_that_failed() {
+    fn result(iterations: u64) -> PlanResult {
         let mut accounts = Accounts::new(vec!["Pick", "Push", "Place"]);
         for _ in 0..3 {
             accounts.count(&[Bucket::Unreachable, Bucket::Accepted, Bucket::NotUseful], 1, false, None);
         }
         accounts.count(&[Bucket::NoGrasp, Bucket::Accepted, Bucket::NotUseful], 1, false, None);
-        let result = PlanResult {
+        PlanResult {
             proof: None,
+            no_clock: None,
             execution_s: None,
             found: None,
             plan: None,
@@ -128,29 +144,64 @@ mod tests {
             doubts: vec!["no way".to_owned()],
             stop: Stop::TimeLimit,
             accounts,
-            iterations: 40,
+            iterations,
             nodes: 9,
             restarts: 0,
             nearest_to_goal: 1.25,
             elapsed: Duration::from_millis(1500),
             times: darrt_task::profile::Times::default(),
-            last_refusal: Some("too bad".to_owned()),
-        };
-        let text = explain(&result);
+            last_refusal: None,
+            partial: None,
+        }
+    }
+
+    fn diagnosis(causes: Vec<Cause>, outcome: Outcome) -> Diagnosis {
+        Diagnosis {
+            problem: "p".to_owned(),
+            ended: darrt_task::diagnosis::Ended::TimeLimit,
+            iterations: 40,
+            causes,
+            remedies: Vec::new(),
+            outcome,
+            nearest_to_goal_m: Some(1.25),
+        }
+    }
+
+    fn refused(n: usize) -> Vec<Cause> {
+        (0..n).map(|i| Cause::Refused { reason: format!("reason {i}") }).collect()
+    }
+
+    #[test]
+    fn more_time_is_advised_only_where_nothing_was_found() {
+        let result = result(40);
+        let text = explain(&result, &diagnosis(Vec::new(), Outcome::MayBeFound));
+        assert!(text.starts_with("time limit reached after 1.5 s, 40 iterations"), "{text}");
+        assert!(text.contains("a longer --time-limit"), "{text}");
+        let text = explain(&result, &diagnosis(refused(1), Outcome::Hopeless));
+        assert!(text.contains("reason 0") && !text.contains("--time-limit"), "{text}");
+    }
+
+    #[test]
+    fn there_are_never_more_than_ten_lines() {
+        for n in [1, 8, 9, 40] {
+            let text = explain(&result(40), &diagnosis(refused(n), Outcome::MayBeFound));
+            assert!(text.lines().count() <= 10, "{text}");
+            assert_eq!(text.contains("more, with --stats"), n > 8, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_details_name_distance_and_the_primitive_that_failed() {
+        let text = details(&result(40), &diagnosis(refused(12), Outcome::MayBeFound));
         for words in [
-            "time limit reached after 1.5 s, 40 iterations",
-            "likely the reason: no way",
+            "reason 11",
+            "before the search: no way",
             "nearest to the goal: 1.250 m",
             "Pick never succeeded in 4 tries, mostly: unreachable (3)",
             "Place was never tried",
-            "refused it: too bad",
-            "--time-limit",
         ] {
             assert!(text.contains(words), "{words}: {text}");
         }
         assert!(!text.contains("Push"));
-        let early = PlanResult { iterations: 4, elapsed: Duration::from_millis(1), ..result };
-        let text = explain(&early);
-        assert!(text.contains("after 0.001 s, 4 iterations") && !text.contains("Pick"), "{text}");
     }
 }

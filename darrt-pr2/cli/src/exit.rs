@@ -7,6 +7,7 @@ use crate::generate::GenerateError;
 use darrt_task::picture::PictureError;
 use darrt_task::plan_file::PlanFileError;
 use darrt_task::problem_file::ProblemFileError;
+use darrt_task::robot_file::RobotFileError;
 use darrt_task::text::on_one_line;
 use darrt_task::viewer::ViewerError;
 
@@ -23,6 +24,9 @@ pub enum Exit {
     Refused = 3,
     /// The output cannot be written.
     CannotWrite = 4,
+    /// The budget ended before a plan was found, and the beginning of one is written; or a plan that is judged is such a
+    /// beginning, and right.
+    Partial = 5,
     /// Interrupted by the user.
     Interrupted = 130,
 }
@@ -56,6 +60,12 @@ impl Failure {
 
 impl From<ProblemFileError> for Failure {
     fn from(error: ProblemFileError) -> Self {
+        Self::input(error.to_string())
+    }
+}
+
+impl From<RobotFileError> for Failure {
+    fn from(error: RobotFileError) -> Self {
         Self::input(error.to_string())
     }
 }

@@ -73,13 +73,17 @@ pub fn run(program: &dyn Program, arguments: impl IntoIterator<Item = OsString>)
 }
 
 fn dispatch(program: &dyn Program, command: &Command) -> Result<Exit, Failure> {
-    use crate::command::{bench, check, generate, plan, problems, schema, show};
+    use crate::command::{bench, check, execute, explain, export, generate, plan, problems, robot, schema, show};
     let mut output = Output::stdout();
     match command {
         Command::Plan(options) => plan::run(program, options, &mut output),
+        Command::Explain(options) => explain::run(program, options, &mut output),
         Command::Check(options) => check::run(program, options, &mut output),
+        Command::Execute(options) => execute::run(program, options, &mut output),
         Command::Problems(options) => problems::run(program, options, &mut output),
         Command::Show(options) => show::run(program, options, &mut output),
+        Command::Export(options) => export::run(program, options, &mut output),
+        Command::Robot(options) => robot::run(program, options, &mut output),
         Command::Schema(options) => schema::run(options, &mut output),
         Command::Generate(options) => generate::run(program, options, &mut output),
         Command::Bench(options) => bench::run(program, options, &mut output),

@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use darrt_task::program::Robots;
+
 fn main() -> ExitCode {
-    darrt_cli::main_with(&darrt_pr2::registry())
+    darrt_cli::main_with(&Robots::new(darrt_pr2::registry()))
 }

@@ -244,9 +244,10 @@ fn robot_descriptions_are_checked() {
 #[test]
 fn meshes_are_checked() {
     let desk = Desk::new();
-    let cases: [(&str, Option<&[u8]>, &str); 6] = [
+    let cases: [(&str, Option<&[u8]>, &str); 7] = [
         ("none.stl", None, "cannot be read"),
-        ("bowl.dae", Some(b""), "`dae`"),
+        ("bowl.ply", Some(b""), "`ply`"),
+        ("bowl.dae", Some(b""), "not a valid COLLADA"),
         ("cut.stl", Some(b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n"), "not a valid STL"),
         ("nan.obj", Some(b"v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "NaN"),
         ("flat.obj", Some(b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), "triangles with an area"),

@@ -36,7 +36,7 @@ fn help_teaches_commands_options_and_exit_codes() {
     let folder = tempfile::tempdir().unwrap();
     let help = darrt(folder.path(), &["--help"]);
     assert_eq!(code(&help), 0);
-    for word in ["plan", "check", "problems", "show", "schema", "bench", "Examples:", "Exit codes:", "130"] {
+    for word in ["plan", "check", "execute", "problems", "show", "schema", "bench", "Examples:", "Exit codes:", "130"] {
         assert!(stdout(&help).contains(word), "{word}");
     }
     let help = stdout(&darrt(folder.path(), &["plan", "--help"]));
@@ -74,7 +74,7 @@ fn bad_usage_is_one_message_and_exit_code_2() {
         &["plan", "plate1", "--improve"],
         &["plan", "plate1", "--improve", "time"],
         &["plan", "plate1", "--picture", "a.svg", "--no-picture"],
-        &["schema", "robot"],
+        &["schema", "planet"],
     ] {
         let output = darrt(folder.path(), arguments);
         assert_eq!(code(&output), 2, "{arguments:?}");
@@ -118,7 +118,7 @@ fn problems_are_listed_and_printed_to_be_copied() {
 #[test]
 fn schemas_are_json() {
     let folder = tempfile::tempdir().unwrap();
-    for kind in ["problem", "plan"] {
+    for kind in ["problem", "plan", "robot"] {
         let schema: serde_json::Value =
             serde_json::from_str(&stdout(&darrt(folder.path(), &["schema", kind]))).unwrap();
         assert!(schema["$schema"].is_string() && schema["properties"]["format"].is_object(), "{kind}");

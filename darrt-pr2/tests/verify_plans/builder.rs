@@ -209,8 +209,10 @@ impl Builder {
                 ..PlannerFacts::default()
             },
             contracts: STANDARD.iter().map(|(id, contract)| (PrimitiveName::new(id.name()), *contract)).collect(),
+            partial: None,
             start: self.start.clone(),
             steps: self.steps.clone(),
+            timing: None,
         }
     }
 }

@@ -119,6 +119,17 @@ pub(crate) fn carry_of(plate: [f64; 2], aside: impl Fn(&mut ArmConfiguration)) -
     b.plan(&problem)
 }
 
+/// Simple Plate with nothing to do: the base drives backwards, then to its left.
+pub(crate) fn around() -> PlanFile {
+    let mut problem = builtin("simple-plate").unwrap();
+    let side = ArmPosture::Side.values(Side::Right);
+    let plate = problem.objects[0].at;
+    problem.goal = Goal { objects: vec![goal_on_table(plate)], robot: None };
+    let mut b = Builder::new(&problem, side, 0.08);
+    b.begin(&PrimitiveName::BASE_TRANSIT, None).drive([-2.4, 0.0, 0.0]).drive([-2.4, 1.6, 0.0]);
+    b.plan(&problem)
+}
+
 /// Simple Plate with nothing to do: the arm waves and the base drives, two waypoints each.
 pub(crate) fn wave() -> PlanFile {
     let mut problem = builtin("simple-plate").unwrap();

@@ -1,5 +1,7 @@
 //! Right plans made wrong: each is refused at the right step, for the right reason, with the right bodies.
 
+#[path = "wrong/clock.rs"]
+mod clock;
 #[path = "wrong/collisions.rs"]
 mod collisions;
 #[path = "wrong/contracts.rs"]

@@ -39,6 +39,26 @@ pub enum KinematicsError {
         /// End of the chain.
         tip: String,
     },
+    /// Nothing moves between two links.
+    #[error("no joint moves between link {base:?} and link {tip:?}")]
+    NoJoint {
+        /// Start of the chain.
+        base: String,
+        /// End of the chain.
+        tip: String,
+    },
+    /// A chain has too many joints.
+    #[error("{count} joints move between link {base:?} and link {tip:?}; at most {bound} are accepted")]
+    TooManyJoints {
+        /// Start of the chain.
+        base: String,
+        /// End of the chain.
+        tip: String,
+        /// How many.
+        count: usize,
+        /// The bound.
+        bound: usize,
+    },
 }
 
 /// The joint above a link, as a function of the variables.

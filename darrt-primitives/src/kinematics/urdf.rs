@@ -1,11 +1,13 @@
 //! A robot description read from URDF text and checked: the only way to obtain a [`RobotDescription`] from outside.
 //!
-//! Reading happens in three steps: [`guard`] refuses texts no reader should see, `urdf-rs` parses, and
+//! Reading happens in steps: [`guard`] refuses texts no reader should see, what planning does not use is blanked out and what it
+//! needs is asked for, `urdf-rs` parses, and
 //! this module checks everything `urdf-rs` lets through (not-a-number, doubled names, loops, zero axes ...). What
 //! comes out is a tree with one root, finite numbers and names that resolve.
 
 mod check;
 mod error;
+mod needed;
 mod vocabulary;
 
 use std::path::Path;
@@ -147,8 +149,10 @@ impl RobotDescription {
     pub fn from_text(text: &str) -> Result<Self, UrdfError> {
         guard::check(text)?;
         vocabulary::check(text)?;
-        let parsed = urdf_rs::read_from_string(text).map_err(|e| UrdfError::Syntax { message: e.to_string() })?;
-        check::checked(&parsed)
+        let needed = needed::only(text)?;
+        let parsed =
+            urdf_rs::read_from_string(&needed.text).map_err(|e| UrdfError::Syntax { message: e.to_string() })?;
+        check::checked(&parsed, &needed.seen)
     }
 
     /// Checks that every link with a visual has a collision shape too, but for those in `shapeless`: planning would drive

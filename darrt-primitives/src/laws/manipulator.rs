@@ -104,7 +104,7 @@ pub const TIPS: &str = "manipulator.tips: the links of the fingers reach as far 
 pub const WEIGHTS: &str =
     "manipulator.weights: the weight of a joint is what the hand travels with it, within a factor of thirty";
 /// Missing pairs.
-pub const SELF_PAIRS: &str = "manipulator.self-pairs: two links with three joints between them that overlap in one configuration and not in another are a pair";
+pub const SELF_PAIRS: &str = "manipulator.self-pairs: two links with four joints between them that overlap in one configuration and not in another are a pair";
 
 /// Durations.
 pub const DURATION: &str = "manipulator.duration: duration_s is finite, 0 from a configuration to itself, more for every joint and coordinate that moves, and not less with something in the hand";

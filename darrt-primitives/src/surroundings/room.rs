@@ -23,6 +23,33 @@ pub struct Hand {
 impl Surroundings {
     /// Do base, trunk and whatever else is rigid to the base keep clear of the fixed bodies? Asks nothing of the arm.
     pub fn is_base_clear<M: Manipulator>(&self, robot: &M, q: &Configuration<M::Joints>) -> bool {
+        self.with_base_at(robot, q, |worker, against| {
+            let is_clear = self.is_clear(worker, &self.base_links, against);
+            if is_clear {
+                worker.known.base = Some(q.base);
+            }
+            is_clear
+        })
+    }
+
+    /// [`Surroundings::is_base_clear`] with a reason.
+    ///
+    /// # Errors
+    /// The first pair found.
+    pub fn check_base<M: Manipulator>(&self, robot: &M, q: &Configuration<M::Joints>) -> Result<(), Blame> {
+        let bound =
+            self.with_base_at(robot, q, |worker, against| self.lower_bound(worker, &self.base_links, against, 0.0));
+        bound.map(drop).map_err(|hit| self.blame(&hit))
+    }
+
+    /// Puts the links of the base where they are in `q`, and asks about them and the fixed bodies: what the arm does and where
+    /// the objects are does not count.
+    fn with_base_at<M: Manipulator, T>(
+        &self,
+        robot: &M,
+        q: &Configuration<M::Joints>,
+        ask: impl FnOnce(&mut Worker, &BodySet) -> T,
+    ) -> T {
         // OPTIMIZATION: the arm's links need no places here.
         let base_from_link = self.base_from_link.get_or_init(|| {
             let mut poses = vec![Isometry3::identity(); self.links.len()];
@@ -39,13 +66,7 @@ impl Surroundings {
             for (id, base_from_link) in base_from_link {
                 self.model.set_pose(&mut worker.scratch, *id, &(world_from_base * base_from_link));
             }
-            // What the arm does and where the objects are does not count.
-            let against = BodySet::ALL.difference(self.model.moving());
-            let is_clear = self.is_clear(worker, &self.base_links, &against);
-            if is_clear {
-                worker.known.base = Some(q.base);
-            }
-            is_clear
+            ask(worker, &BodySet::ALL.difference(self.model.moving()))
         })
     }
 

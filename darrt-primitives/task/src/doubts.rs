@@ -112,26 +112,26 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         obstacles.chain(objects).filter_map(wide).collect()
     }
 
-    fn objects(&self) -> impl Iterator<Item = (ObjectId, &'a Object)> + use<'a, M> {
+    pub(crate) fn objects(&self) -> impl Iterator<Item = (ObjectId, &'a Object)> + use<'a, M> {
         self.problem.objects.iter().enumerate().map(|(index, object)| (ObjectId::new(index), object))
     }
 
-    fn means(&self, object: &'a Object) -> Means<'a> {
+    pub(crate) fn means(&self, object: &'a Object) -> Means<'a> {
         Means::new(self.problem, object, self.allowed, self.m.manipulator())
     }
 
     /// Does only this primitive of ours do that? Of a user's own nothing is known.
-    fn is_ours(&self, id: PrimitiveId, does: impl Fn(&Contract) -> bool) -> bool {
+    pub(crate) fn is_ours(&self, id: PrimitiveId, does: impl Fn(&Contract) -> bool) -> bool {
         self.allowed.iter().all(|(other, contract)| *other == id || !does(contract))
     }
 
-    fn must_move(&self, id: ObjectId) -> bool {
+    pub(crate) fn must_move(&self, id: ObjectId) -> bool {
         let mut groups = self.goal.groups().iter().filter(|group| group.iter().any(|goal| goal.object == id));
         groups.any(|group| !group.iter().any(|goal| goal.is_met(self.start)))
     }
 
     /// The start, with the objects that may be moved out of the way of `id` out of its way.
-    fn alone(&self, id: ObjectId, immovable: &[ObjectId]) -> TabletopState<M> {
+    pub(crate) fn alone(&self, id: ObjectId, immovable: &[ObjectId]) -> TabletopState<M> {
         let mut state = self.start.clone();
         for (index, pose) in state.objects.iter_mut().enumerate() {
             let other = ObjectId::new(index);
@@ -164,7 +164,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
     }
 
     /// Has the object a goal on what it stands on, to which a push may lead?
-    fn may_be_pushed_there(&self, means: &Means<'_>) -> bool {
+    pub(crate) fn may_be_pushed_there(&self, means: &Means<'_>) -> bool {
         let object = means.object;
         let across = self.problem.surfaces_across(object);
         let goals = self.problem.goal.objects.iter().filter(|goal| goal.object == object.name);

@@ -83,8 +83,10 @@ impl Exporter {
             seed,
             planner,
             contracts,
+            partial: None,
             start: self.waypoint(m, plan.start(), plan.start().mode.gap_m()),
             steps,
+            timing: None,
         }
     }
 

@@ -12,6 +12,7 @@ use darrt_geom::{Body, FixedBody, GeomError, Shape};
 use darrt_primitives::goal::TabletopGoal;
 use nalgebra::{Isometry3, Translation3};
 
+use crate::diagnosis::cause::Occupant;
 use crate::planning_error::PlanningError;
 use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
@@ -68,10 +69,9 @@ impl<M: Manipulator> Room<'_, M> {
                 None => self.object_in_the_way(id, &movable.body, pose, target)?,
                 found => found,
             };
-            if let Some(blame) = blame {
-                let [x, y, z] = <[f64; 3]>::from(pose.translation.vector);
-                let blame = format!("at ({x:.3}, {y:.3}, {z:.3}) it touches {blame}");
-                return Ok(Some(PlanningError::GoalBlocked { object: movable.body.name.to_string(), blame }));
+            if let Some((by, occupant)) = blame {
+                let (object, at) = (movable.body.name.to_string(), pose.translation.vector.into());
+                return Ok(Some(PlanningError::GoalBlocked { object, by, occupant, at }));
             }
         }
         Ok(None)
@@ -84,7 +84,7 @@ impl<M: Manipulator> Room<'_, M> {
         body: &Body,
         pose: &Isometry3<f64>,
         target: &PartialState<Tabletop<M>>,
-    ) -> Result<Option<String>, GeomError> {
+    ) -> Result<Option<(String, Occupant)>, GeomError> {
         let still = self.immovable.iter().filter_map(|other| Some((*other, self.start.object(*other)?, true)));
         for (other, there, is_immovable) in still.chain(target.objects().map(|(other, pose)| (other, pose, false))) {
             let Some(movable) = self.m.movable(other).filter(|_| other != id) else { continue };
@@ -93,12 +93,8 @@ impl<M: Manipulator> Room<'_, M> {
             let is_mesh =
                 [body, &movable.body].iter().any(|b| b.parts.iter().any(|p| matches!(p.shape, Shape::Mesh(_))));
             if !is_mesh && between(body, pose, &movable.body, there)?.distance < -(slack_m + ROUNDING) {
-                let name = &movable.body.name;
-                return Ok(Some(if is_immovable {
-                    format!("`{name}`, which never moves")
-                } else {
-                    format!("`{name}`, which has its goal there")
-                }));
+                let occupant = if is_immovable { Occupant::Immovable } else { Occupant::Goal };
+                return Ok(Some((movable.body.name.to_string(), occupant)));
             }
         }
         Ok(None)
@@ -118,14 +114,14 @@ fn in_the_way<M: Manipulator>(
     body: &Body,
     pose: &Isometry3<f64>,
     scene: &Scene,
-) -> Result<Option<String>, GeomError> {
+) -> Result<Option<(String, Occupant)>, GeomError> {
     let under = m.surface_under(id, pose, ON_TOP).and_then(|s| m.supports().get(s.index()));
     let stands_on = |name: &str| under.is_some_and(|s| s.bodies.iter().any(|b| &**b == name));
     let raised = Translation3::new(0.0, 0.0, LIFT) * pose;
     for fixed in scene.bodies().iter().filter(|fixed| !stands_on(&fixed.body.name)) {
         let gap = between(body, &raised, &fixed.body, &fixed.world_from_body)?;
         if overlap(&gap, body, fixed) {
-            return Ok(Some(format!("`{}`", fixed.body.name)));
+            return Ok(Some((fixed.body.name.to_string(), Occupant::Fixed)));
         }
     }
     Ok(None)

@@ -80,8 +80,7 @@ impl<'a> Means<'a> {
         let push = if is_own(slides, PUSH) {
             push
         } else {
-            push.and(fit(object.pushable(), "it is not `pushable`"))
-                .and_then(|()| steady(problem, object, robot.push_force_n()))
+            push.and(fit(object.pushable(), "it is not `pushable`")).and_then(|()| steady(problem, object, robot))
         };
         Self { object, pick, place, push }
     }
@@ -122,13 +121,13 @@ impl<'a> Means<'a> {
 }
 
 /// Whether two fingers push the object: why not, with the numbers.
-fn steady(problem: &ProblemFile, object: &Object, push_force_n: f64) -> Result<(), String> {
+fn steady(problem: &ProblemFile, object: &Object, robot: &impl Manipulator) -> Result<(), String> {
     let friction = |value| Friction::new(value).map_err(|error| error.to_string());
     let Some(radius_m) = object.shape.round_radius() else { return Ok(()) };
     let (table, fingers) = (friction(object.friction.table)?, friction(object.friction.fingers)?);
     let disc = SlidingDisc { radius_m, mass_kg: object.mass_kg, table, fingers };
-    let gap_m = disc.finger_gap_m(problem.push.gap_m);
-    let push = disc.steady_push(gap_m, problem.push.position_error_m, push_force_n);
+    let gap_m = disc.finger_gap_m(problem.push.gap_m.min(robot.hand().max_gap_m()));
+    let push = disc.steady_push(gap_m, problem.push.position_error_m, robot.push_force_n());
     push.map(|_| ()).map_err(|why| why.to_string())
 }
 

@@ -6,10 +6,11 @@
 //! | how is it written so that it is never half there? | [`mod@write`] |
 //! | which joints does a waypoint list? | [`joints`], [`complete`] |
 //! | how was it found? | [`facts`] |
+//! | when is the robot where? | [`timing`] |
 //! | what does the published schema say? | [`schema`](crate::schema) |
 //!
 //! `docs/plan-format.md` explains the meaning of every key to readers without this code. SI units, radians, world frame
-//! with the floor at z = 0, quaternions `[x, y, z, w]`. No times are stored: one problem and one seed give one file,
+//! with the floor at z = 0, quaternions `[x, y, z, w]`. How long the search took is not stored: one problem and one seed give one file,
 //! byte for byte.
 
 pub mod complete;
@@ -19,6 +20,7 @@ pub mod joints;
 mod json;
 mod layout;
 pub mod read;
+pub mod timing;
 mod unique;
 pub mod write;
 
@@ -35,6 +37,7 @@ use crate::problem_file::{PrimitiveName, ProblemFile};
 pub use error::PlanFileError;
 pub use facts::{GradeName, PlannerFacts, SearchName};
 pub use joints::JointTable;
+pub use timing::Timing;
 
 /// The only accepted value of the key `format`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -64,10 +67,28 @@ pub struct PlanFile {
     /// What the steps of each primitive keep to, by its name: a primitive that is not the paper's is judged by this alone.
     #[serde(deserialize_with = "unique::map")]
     pub contracts: BTreeMap<PrimitiveName, Contract>,
+    /// What is left to do, if the plan does not lead to the whole goal: the beginning of a plan that was not found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub partial: Option<Partial>,
     /// Where everything stands before the first step.
     pub start: Waypoint,
     /// The primitive actions in order.
     pub steps: Vec<Step>,
+    /// When the robot is where; missing in files of older programs and in plans that were not timed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub timing: Option<Timing>,
+}
+
+/// How much of the goal a plan leads to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Partial {
+    /// The objects whose goals hold at the end.
+    pub met: Vec<String>,
+    /// The objects whose goals need not hold at the end.
+    pub remains: Vec<String>,
+    /// The goal of the robot need not hold either.
+    pub robot_remains: bool,
 }
 
 /// One primitive action.

@@ -1,31 +1,38 @@
 //! Planning a problem file from end to end: build, search, verify, export.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
 use darrt_core::budget::{Budget, Cancel, Stop};
 use darrt_core::cost::{ExecutionCost, plan_seconds};
+use darrt_core::domain::Domain as _;
 use darrt_core::extend::ExtendOptions;
 use darrt_core::goal::Goal;
 use darrt_core::improve::{ImproveOptions, Improvement};
 use darrt_core::observe::accounts::Accounts;
 use darrt_core::observe::{Event, Observer};
+use darrt_core::partial::PartialState;
 use darrt_core::plan::Plan;
 use darrt_core::problem::{Parts, Problem};
-use darrt_core::sample::{GoalBiased, Placed};
+use darrt_core::sample::{GoalBiased, Guided, Placed};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
-use darrt_core::space::Place;
+use darrt_core::space::{ComponentSpace as _, Place};
+use darrt_core::state::ObjectId;
 use darrt_core::verify::{Refusal, Solution, Verified, Verifier};
 use darrt_primitives::detour::Detour;
+use darrt_primitives::goal::TabletopGoal;
 use darrt_primitives::surroundings::NearPair;
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
 use darrt_primitives::validity::SceneValidity;
+use nalgebra::Isometry3;
 
+use crate::clock::{NoClock, give_clock};
 use crate::doubts::Outlook;
 use crate::export::{Exporter, Written};
-use crate::plan_file::{PlanFile, PlannerFacts, SearchName};
+use crate::plan_file::{PlanFile, PlannerFacts, Pose, SearchName};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{CostName, DistanceName, ProblemFile, SamplerName};
 use crate::profile::{Profile, Timed, Times, Watched};
@@ -35,8 +42,12 @@ use crate::verify::{Proof, VerifyOptions, verify_unless};
 use crate::world::{self, Built};
 
 mod course;
+mod partial;
+mod steered;
 pub mod variants;
 
+pub(crate) use steered::STEER;
+use steered::Steered;
 use variants::StrategyChange;
 
 /// Bound on the travel of any point of the robot between two nodes of the tree, metres; the hand moves about a third.
@@ -45,6 +56,8 @@ const NODE_SPACING: f64 = 1.0;
 const SHORTENING: usize = 200;
 /// See [`Strategy::try_penalty_m`].
 const TRY_PENALTY: f64 = 0.1;
+/// Share of the samples that are places of an earlier plan, where there is one.
+const HINTS: f64 = 0.5;
 /// Share of the samples from a goal for several objects that name only some of them.
 const GOAL_PARTS: f64 = 0.5;
 /// Iterations of an attempt where several are needed and nobody says how long one is; as in the built-in problems.
@@ -85,6 +98,8 @@ pub struct PlanRequest {
     pub cost: CostName,
     /// Changes of the search strategy, after all else.
     pub changes: Vec<StrategyChange>,
+    /// Places of objects by name that are proposed to the search, as an earlier plan had them.
+    pub hints: Vec<BTreeMap<String, Pose>>,
 }
 
 impl PlanRequest {
@@ -105,6 +120,7 @@ impl PlanRequest {
             bases_from_reachability: false,
             cost: CostName::default(),
             changes: Vec::new(),
+            hints: Vec::new(),
         }
     }
 }
@@ -116,7 +132,10 @@ pub struct PlanResult {
     pub plan: Option<PlanFile>,
     /// What the verifier saw of that plan.
     pub proof: Option<Proof>,
-    /// Seconds that carrying it out takes, see [`CostName`].
+    /// Why the plan has no clock, if it has none.
+    pub no_clock: Option<NoClock>,
+    /// Seconds that carrying it out takes, see [`CostName`]: the cost by which plans are compared, an estimate of what its clock
+    /// says.
     pub execution_s: Option<f64>,
     /// The plan that was found before it was improved, with the seconds of its straight ways: where one is blocked, the way
     /// around takes longer. `None` if the plan is as it was found.
@@ -145,6 +164,9 @@ pub struct PlanResult {
     pub times: Times,
     /// The last refusal of the verifier.
     pub last_refusal: Option<String>,
+    /// Without a plan, the beginning of one, verified: as far towards the goal as the search came with the objects. `None` if
+    /// it moved none, or was cancelled.
+    pub partial: Option<(PlanFile, Proof)>,
 }
 
 /// The judge: a plan is exported and the plan file is verified, so that what is accepted is what the user gets. What a file
@@ -193,6 +215,9 @@ pub struct Prepared<M: TaskRobot> {
     /// What makes a plan unlikely, in words; empty for most problems.
     pub doubts: Vec<String>,
     exporter: Arc<Exporter>,
+    facts: Arc<RobotFacts>,
+    /// G, of which a partial plan meets some parts.
+    goal: TabletopGoal<M::Joints>,
 }
 
 /// Builds and checks everything about a problem before the search.
@@ -238,9 +263,15 @@ fn prepare_watched<M: TaskRobot>(
     let doubts = outlook.doubts(&immovable);
     let facts = Arc::new(M::facts(&file.robot)?);
     let exporter = Arc::new(Exporter::new(file, &facts)?);
+    let (whole_goal, robot_facts) = (goal.clone(), Arc::clone(&facts));
     let verifier =
         FileVerifier { exporter: Arc::clone(&exporter), facts, cancel: cancel.clone(), watch: Arc::clone(watch) };
-    let primitives = registry.build_primitives(file)?.into_iter();
+    let ids: Vec<_> = allowed.iter().map(|(id, _)| *id).collect();
+    let rules = steered::rules(&file.steers, &ids);
+    let steered = |part| {
+        if rules.is_empty() { part } else { Box::new(Steered { part, rules: Arc::clone(&rules) }) as _ }
+    };
+    let primitives = registry.build_primitives(file)?.into_iter().map(steered);
     let problem = Problem::new(Parts {
         domain: world,
         start,
@@ -249,7 +280,7 @@ fn prepare_watched<M: TaskRobot>(
         validity: Box::new(Timed { part: validity, watch: Arc::clone(watch) }),
         verifier: Box::new(verifier),
     })?;
-    Ok(Prepared { problem, near, doubts, exporter })
+    Ok(Prepared { problem, near, doubts, exporter, facts: robot_facts, goal: whole_goal })
 }
 
 /// Plans. Stopping without a plan is a result, not an error.
@@ -270,6 +301,10 @@ pub fn plan<M: TaskRobot>(
         strategy.improve = None;
     }
     request.changes.iter().for_each(|change| change.apply(&mut strategy));
+    if !request.hints.is_empty() {
+        let targets = hinted(prepared.problem.domain(), &request.hints);
+        strategy.sampler = Box::new(Guided::new(strategy.sampler, targets, HINTS)?);
+    }
     strategy.reroute = strategy.reroute.map(|part| Box::new(Timed { part, watch: Arc::clone(&watch) }) as _);
     let budget = &request.problem.budget;
     let needs_restarts = request.improve.is_some() || request.algorithms.len() > 1;
@@ -308,6 +343,19 @@ pub fn plan<M: TaskRobot>(
     Ok(PlanResult { plans, times, ..result(&prepared, request, cost, outcome)? })
 }
 
+/// The places that are proposed, as targets: those of objects that there are, and that may be there.
+fn hinted<M: TaskRobot>(m: &Tabletop<M>, hints: &[BTreeMap<String, Pose>]) -> Vec<PartialState<Tabletop<M>>> {
+    let target = |hint: &BTreeMap<String, Pose>| {
+        let named = m.movables().iter().enumerate().filter_map(|(index, movable)| {
+            let pose = Isometry3::from(*hint.get(&*movable.body.name)?);
+            Some((ObjectId::new(index), pose))
+                .filter(|_| m.objects().get(index).is_some_and(|space| space.contains(&pose)))
+        });
+        named.fold(PartialState::anywhere(m), |target, (id, pose)| target.with_object(id, pose))
+    };
+    hints.iter().map(target).filter(|target| target.objects().next().is_some()).collect()
+}
+
 fn result<M: TaskRobot>(
     prepared: &Prepared<M>,
     request: &PlanRequest,
@@ -332,18 +380,27 @@ fn result<M: TaskRobot>(
         Ok::<_, PlanningError>((file, plan_seconds(cost, m, plan)))
     });
     let found = found.transpose()?;
+    let whole = || (request.seed, facts.clone());
+    let partial = outcome.part.as_ref().and_then(|plan| partial::verified(prepared, plan, whole()));
     let judged = outcome.solution.map(Solution::into_parts).and_then(|(plan, verified)| {
         let judged = verified.evidence?.downcast().ok()?;
         Some((plan, Arc::<Judged>::unwrap_or_clone(judged)))
     });
-    let (plan, proof) = judged
+    let (mut plan, mut proof) = judged
         .map(|(plan, Judged { written, proof })| {
             (prepared.exporter.with_steps(m, &plan, written, request.seed, facts), proof)
         })
         .unzip();
+    let facts = M::facts(&request.problem.robot)?;
+    let no_clock =
+        plan.as_mut().and_then(|plan| give_clock(plan, &facts, &VerifyOptions::default(), &Cancel::new()).err());
+    if let (Some(plan), Some(proof)) = (&plan, &mut proof) {
+        proof.duration_s = plan.timing.as_ref().map(|timing| timing.duration_s);
+    }
     Ok(PlanResult {
         plan,
         proof,
+        no_clock,
         execution_s,
         found,
         plans: 0,
@@ -358,6 +415,7 @@ fn result<M: TaskRobot>(
         elapsed: outcome.elapsed,
         times: Times::default(),
         last_refusal: outcome.last_refusal,
+        partial,
     })
 }
 

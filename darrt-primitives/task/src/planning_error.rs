@@ -2,6 +2,7 @@
 
 use darrt_geom::GeomError;
 
+use crate::diagnosis::cause::Occupant;
 use crate::export::UnknownPrimitive;
 use crate::grasp_families::GraspFlaw;
 use crate::plan_file::PlanFileError;
@@ -49,13 +50,17 @@ pub enum PlanningError {
         /// The name.
         name: String,
     },
-    /// The object cannot be at its goal: something fixed is in the way there.
-    #[error("the goal of `{object}` is blocked: {blame}")]
+    /// The object cannot be at its goal: something that stays there is in the way.
+    #[error("the goal of `{object}` is blocked: at ({:.3}, {:.3}, {:.3}) it touches `{by}`{occupant}", at[0], at[1], at[2])]
     GoalBlocked {
         /// The object.
         object: String,
-        /// What is in the way, and where.
-        blame: String,
+        /// What is in the way.
+        by: String,
+        /// Why it stays there.
+        occupant: Occupant,
+        /// Where the object would be, metres.
+        at: [f64; 3],
     },
     /// The primitives and grasps of the problem do not suffice for any of the goals of an object.
     #[error("the goal of `{object}` cannot be reached: {why}")]
@@ -63,6 +68,14 @@ pub enum PlanningError {
         /// The object.
         object: String,
         /// What each of its goals lacks.
+        why: String,
+    },
+    /// Steps of an old plan that shall be kept cannot be.
+    #[error("the first {keep} steps of the plan cannot be kept: {why}")]
+    CannotKeep {
+        /// How many.
+        keep: usize,
+        /// Why not.
         why: String,
     },
     /// Plans shall be improved without an end.

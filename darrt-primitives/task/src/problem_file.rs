@@ -25,8 +25,9 @@ pub mod robot;
 pub mod safety;
 pub mod settings;
 pub mod shape;
+pub mod steer;
 pub mod suggest;
-mod toml_path;
+pub(crate) mod toml_path;
 pub mod upper_face;
 pub mod validate;
 pub mod world;
@@ -41,6 +42,7 @@ pub use robot::{ArmSide, Limits, Robot};
 pub use safety::Safety;
 pub use settings::{Budget, EdgeRule, PaperFigures, Place, Push, Sampling, Transit};
 pub use shape::{PlateRim, ShapeSpec};
+pub use steer::Steer;
 pub use world::{Bounds, Obstacle, Surface};
 
 use std::collections::BTreeMap;
@@ -103,6 +105,9 @@ pub struct ProblemFile {
     pub objects: Vec<Object>,
     /// Where objects and robot shall end.
     pub goal: Goal,
+    /// Rules for the steps of the plan.
+    #[serde(default, rename = "steer", skip_serializing_if = "Vec::is_empty")]
+    pub steers: Vec<Steer>,
     /// How far robot and objects keep from what they need not touch.
     #[serde(default)]
     pub safety: Safety,
@@ -140,6 +145,11 @@ impl ProblemFile {
     /// The fixed body called `name`.
     pub fn obstacle(&self, name: &str) -> Option<&Obstacle> {
         self.obstacles.iter().find(|obstacle| obstacle.name == name)
+    }
+
+    /// Whether there is a goal for the object of this name.
+    pub fn has_goal(&self, object: &str) -> bool {
+        self.goal.objects.iter().any(|goal| goal.object == object)
     }
 
     /// Whether the planner may use the primitive of this name.

@@ -234,6 +234,10 @@ impl<M: Manipulator, G: Goal<Tabletop<M>>> Goal<Tabletop<M>> for Timed<G> {
     fn sample(&self, m: &Tabletop<M>, rng: &mut dyn Rng) -> Option<PartialState<Tabletop<M>>> {
         self.part.sample(m, rng)
     }
+
+    fn parts_met(&self, m: &Tabletop<M>, state: &State<Tabletop<M>>) -> usize {
+        self.part.parts_met(m, state)
+    }
 }
 
 /// Hands on what happens and counts the plans; after a refusal the next plan counts as the first.

@@ -305,7 +305,13 @@ impl<M: TaskRobot> Registry<M> {
         let primitives: Vec<_> = self.primitives.iter().map(|entry| entry.id.name()).collect();
         let samplers: Vec<_> = self.samplers.iter().map(|(name, _)| *name).collect();
         let distances: Vec<_> = self.distances.iter().map(|(name, _)| *name).collect();
-        names::unknown(problem, M::MODEL, &primitives, M::POSTURES, &samplers, &distances).or_else(|| {
+        let (models, postures) = (M::models(), M::posture_names(&problem.robot));
+        let postures = match postures {
+            Ok(postures) => postures,
+            Err(error) => return Some(Flaw::Inconsistent(format!("cannot be used: {error}")).at("robot")),
+        };
+        let [models, postures] = [&models, &postures].map(|names| names.iter().map(String::as_str).collect::<Vec<_>>());
+        names::unknown(problem, &models, &primitives, &postures, &samplers, &distances).or_else(|| {
             let mut allowed = self.primitives.iter().filter(|entry| is_allowed(problem, entry.id.name()));
             allowed.find_map(|entry| (entry.build)(problem).err())
         })

@@ -6,11 +6,14 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use darrt_primitives::contract::Contract;
 use darrt_primitives::kinematics::{RobotDescription, UrdfError};
 use darrt_primitives::manipulator::{Configuration, Manipulator};
 
-use crate::problem_file::Robot as RobotSettings;
+use crate::clock::MotionLimits;
 use crate::problem_file::suggest::nearest;
+use crate::problem_file::{PrimitiveName, ProblemFile, Robot as RobotSettings};
+use crate::robot_file::RobotFileError;
 
 /// A robot that problem files can be about.
 ///
@@ -18,11 +21,14 @@ use crate::problem_file::suggest::nearest;
 /// - The links of [`TaskRobot::facts`], moved by [`TaskRobot::joint_values`], stand where [`Manipulator::link_poses`] says.
 /// - [`RobotFacts::start`] holds of the configuration that [`TaskRobot::build`] returns.
 pub trait TaskRobot: Manipulator + Sized {
-    /// Its name, for `model` in problem files.
-    const MODEL: &'static str;
+    /// The names by which `model` in problem files may call it.
+    fn models() -> Vec<String>;
 
-    /// The names of the postures of the arm, for problem files.
-    const POSTURES: &'static [&'static str];
+    /// The names of the postures of the arm, for problem files with this table `[robot]`.
+    ///
+    /// # Errors
+    /// [`RobotError`] for a robot that cannot be read.
+    fn posture_names(settings: &RobotSettings) -> Result<Vec<String>, RobotError>;
 
     /// The robot of the table `[robot]` of a problem, and where its arm starts.
     ///
@@ -36,12 +42,36 @@ pub trait TaskRobot: Manipulator + Sized {
     /// [`RobotError`] with the key at fault.
     fn facts(settings: &RobotSettings) -> Result<RobotFacts, RobotError>;
 
+    /// `problem` with the robot that a person names on a command line; `contract` says what a primitive does. Also what was
+    /// changed besides, in words. By default a robot knows its own names only, and takes the problem as it is.
+    ///
+    /// # Errors
+    /// [`RobotError`] when there is no such robot, or it does not fit the problem.
+    fn with_robot(
+        problem: ProblemFile,
+        name: &str,
+        _contract: &dyn Fn(&PrimitiveName) -> Option<Contract>,
+    ) -> Result<(ProblemFile, Vec<String>), RobotError> {
+        let models = Self::models();
+        if !models.iter().any(|model| model == name) {
+            let nearest = nearest(name, models.iter().map(String::as_str)).map(str::to_owned);
+            return Err(RobotFileError::UnknownRobot { name: name.to_owned(), nearest, available: models }.into());
+        }
+        let robot = RobotSettings { model: Some(name.to_owned()), file: None, ..problem.robot.clone() };
+        Ok((ProblemFile { robot, ..problem }, Vec::new()))
+    }
+
     /// The joints of the arm in the posture of this name.
     fn posture(&self, name: &str) -> Option<Self::Joints>;
 
     /// The values of the variables of the kinematic tree of [`RobotFacts::description`] (rad or m, in the tree's order), with
     /// the hand open by `gap_m`.
     fn joint_values(&self, q: &Configuration<Self::Joints>, gap_m: f64) -> Vec<f64>;
+
+    /// Does its base move? Primitives that drive are refused for one that does not.
+    fn drives(&self) -> bool {
+        true
+    }
 
     /// The same robot that draws where it stands from a model of where its arm reaches, if it has one.
     #[must_use]
@@ -78,6 +108,8 @@ pub struct RobotFacts {
     pub at_rest: JointValues,
     /// Pairs of links that must be kept apart.
     pub self_pairs: Vec<[String; 2]>,
+    /// Its base is bolted down: it never moves.
+    pub is_bolted: bool,
     /// Length of a pad from the tip back, metres.
     pub pad_length_m: f64,
     /// Force of each finger on what it holds, newton.
@@ -86,6 +118,8 @@ pub struct RobotFacts {
     pub payload_kg: f64,
     /// The largest force with which the hand pushes sideways, newton.
     pub push_force_n: f64,
+    /// How fast it is driven: what its description does not say, with [`MotionLimits::default`] for what nobody knows.
+    pub motion: MotionLimits,
 }
 
 /// A robot that cannot be built as a problem asks.
@@ -95,6 +129,9 @@ pub enum RobotError {
     /// The description cannot be used.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
+    /// The robot file cannot be used.
+    #[error(transparent)]
+    File(#[from] RobotFileError),
     /// A start of an arm has the wrong number of joints.
     #[error("`{key}` has {found} entries, must have {expected}, one for each joint of the arm")]
     JointCount {
@@ -115,7 +152,7 @@ pub enum RobotError {
         /// The nearest name.
         nearest: Option<String>,
         /// All names.
-        available: &'static [&'static str],
+        available: Vec<String>,
     },
     /// A key that this robot cannot follow.
     #[error("`{key}` {why}")]
@@ -131,10 +168,11 @@ pub enum RobotError {
 }
 
 impl RobotError {
-    /// There is no posture `name`, which `key` asks for, among those of `R`.
-    pub fn unknown_posture<R: TaskRobot>(key: impl Into<String>, name: &str) -> Self {
-        let nearest = nearest(name, R::POSTURES.iter().copied()).map(str::to_owned);
-        Self::UnknownPosture { key: key.into(), name: name.to_owned(), nearest, available: R::POSTURES }
+    /// There is no posture `name`, which `key` asks for, among those that are `available`.
+    pub fn unknown_posture(key: impl Into<String>, name: &str, available: impl IntoIterator<Item = String>) -> Self {
+        let available: Vec<_> = available.into_iter().collect();
+        let nearest = nearest(name, available.iter().map(String::as_str)).map(str::to_owned);
+        Self::UnknownPosture { key: key.into(), name: name.to_owned(), nearest, available }
     }
 
     /// An error of the robot's own model.

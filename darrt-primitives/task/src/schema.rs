@@ -1,4 +1,4 @@
-//! The published JSON Schemas of problem files and plan files, derived from the types so that they cannot say anything
+//! The published JSON Schemas of problem files, plan files and diagnoses, derived from the types so that they cannot say anything
 //! else; unknown keys are forbidden everywhere.
 //!
 //! Editors use them to complete and check files, TOML and JSON alike.
@@ -6,7 +6,8 @@
 use schemars::JsonSchema;
 use serde_json::Value;
 
-/// The JSON Schema of the file format `T`: [`ProblemFile`](crate::problem_file::ProblemFile) or
+/// The JSON Schema of the file format `T`: [`ProblemFile`](crate::problem_file::ProblemFile),
+/// [`Diagnosis`](crate::diagnosis::Diagnosis) or
 /// [`PlanFile`](crate::plan_file::PlanFile).
 pub fn schema<T: JsonSchema>() -> Value {
     schemars::schema_for!(T).to_value()
@@ -23,8 +24,10 @@ pub fn schema_text<T: JsonSchema>() -> Result<String, serde_json::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnosis::Diagnosis;
     use crate::plan_file::PlanFile;
     use crate::problem_file::ProblemFile;
+    use crate::robot_file::RobotFile;
 
     /// Set to rewrite the published schemas instead of comparing with them.
     const UPDATE: &str = "DARRT_UPDATE_SCHEMAS";
@@ -43,6 +46,8 @@ mod tests {
     fn the_published_schemas_are_up_to_date() {
         check_published::<ProblemFile>("problem");
         check_published::<PlanFile>("plan");
+        check_published::<RobotFile>("robot");
+        check_published::<Diagnosis>("diagnosis");
     }
 
     fn check_closed(value: &Value, path: &str) {
@@ -62,5 +67,7 @@ mod tests {
     fn unknown_keys_are_forbidden_everywhere() {
         check_closed(&schema::<ProblemFile>(), "problem");
         check_closed(&schema::<PlanFile>(), "plan");
+        check_closed(&schema::<RobotFile>(), "robot");
+        check_closed(&schema::<Diagnosis>(), "diagnosis");
     }
 }

@@ -9,6 +9,7 @@ pub(crate) use darrt_pr2::robot::Pr2;
 use darrt_primitives::manipulator::{Configuration, Manipulator};
 use darrt_task::robot::TaskRobot as Outside;
 
+use crate::clock::{Bounds, MotionLimits};
 use crate::plan_file::PlanFile;
 use crate::planning::{PlanRequest, PlanResult, plan};
 use crate::problem_file::collection::{BuiltIn, Collection, ProblemGroup};
@@ -48,14 +49,35 @@ pub(crate) fn verify(plan: &PlanFile) -> Result<Proof, Refusal> {
     crate::verify::verify(plan, &facts(&plan.problem))
 }
 
+fn motion(limits: &darrt_task::clock::MotionLimits) -> MotionLimits {
+    let bounds = |b: darrt_task::clock::Bounds| Bounds::new(b.velocity, b.acceleration, b.jerk);
+    MotionLimits {
+        joint_velocities: limits.joint_velocities.clone(),
+        turning_joint: bounds(limits.turning_joint),
+        sliding_joint: bounds(limits.sliding_joint),
+        drive: bounds(limits.drive),
+        turn: bounds(limits.turn),
+        loaded_base_share: limits.loaded_base_share,
+        grasp_s: limits.grasp_s,
+        release_s: limits.release_s,
+        contact_s: limits.contact_s,
+        at_object_m_per_s: limits.at_object_m_per_s,
+    }
+}
+
 /// The same table, as the PR2 knows it.
 fn outside(settings: &Robot) -> darrt_task::problem_file::Robot {
     serde_json::from_value(serde_json::to_value(settings).unwrap()).unwrap()
 }
 
 impl TaskRobot for Pr2 {
-    const MODEL: &'static str = <Self as Outside>::MODEL;
-    const POSTURES: &'static [&'static str] = <Self as Outside>::POSTURES;
+    fn models() -> Vec<String> {
+        <Self as Outside>::models()
+    }
+
+    fn posture_names(settings: &Robot) -> Result<Vec<String>, RobotError> {
+        <Self as Outside>::posture_names(&outside(settings)).map_err(RobotError::model)
+    }
 
     fn build(settings: &Robot) -> Result<(Self, Joints), RobotError> {
         <Self as Outside>::build(&outside(settings)).map_err(RobotError::model)
@@ -76,10 +98,12 @@ impl TaskRobot for Pr2 {
             start: facts.start,
             at_rest: facts.at_rest,
             self_pairs: facts.self_pairs,
+            is_bolted: facts.is_bolted,
             pad_length_m: facts.pad_length_m,
             grip_force_n: facts.grip_force_n,
             payload_kg: facts.payload_kg,
             push_force_n: facts.push_force_n,
+            motion: motion(&facts.motion),
         })
     }
 

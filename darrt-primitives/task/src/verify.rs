@@ -16,12 +16,15 @@
 //! | is an object gripped, pushed as pushes go, or dragged from above? | `hand`, `drag` |
 //! | over which of the surfaces that lie flush is an object? | `flush` |
 //! | does the grip bear the weight, also as the object leans? | `hold`, `surface` |
+//! | does it keep to what a person wants? | `steer` |
 //! | is it left far enough from an edge? | `edge` |
 //! | does the plan start and end where it must? | `start`, `goal` |
+//! | can the robot follow its clock? | `clock` |
 //!
 //! `docs/plan-format.md` states the rules for readers of plans.
 
 mod approach;
+mod clock;
 mod drag;
 mod edge;
 mod flush;
@@ -40,6 +43,7 @@ mod schedule;
 mod solid;
 mod stage;
 mod start;
+mod steer;
 mod surface;
 mod warning;
 mod world;
@@ -70,6 +74,8 @@ pub struct Proof {
     /// The same of two bodies that must be near and may not touch: hand or handled object, against that object and what
     /// carries it.
     pub smallest_intended: Option<SmallestClearance>,
+    /// Seconds that the plan takes by its clock, which was judged too; `None` for a plan without one.
+    pub duration_s: Option<f64>,
     /// What a careful engineer would ask about, in the order of the steps.
     pub warnings: Vec<Warning>,
 }
@@ -104,7 +110,29 @@ pub fn verify_unless(
         let text = format!("the verifier's option `{name}` is {value}, which is out of its range");
         return Err(Refusal::whole(RefusalKind::Malformed, text));
     }
-    judge::Judge::new(plan, robot, options, cancel)?.run()
+    let proof = judge::Judge::new(plan, robot, options, cancel)?.run()?;
+    match &plan.timing {
+        Some(timing) => {
+            clock::check(plan, timing, robot, options, cancel)?;
+            Ok(Proof { duration_s: Some(timing.duration_s), ..proof })
+        }
+        None => Ok(proof),
+    }
+}
+
+/// Judges only the clock of a plan whose waypoints have been accepted: the limits of the robot, the pace of the hand, waits, and
+/// the curve where corners are rounded. A plan without a clock has nothing to judge.
+///
+/// # Errors
+/// As [`verify_unless`].
+pub fn verify_clock(
+    plan: &PlanFile,
+    robot: &RobotFacts,
+    options: &VerifyOptions,
+    cancel: &Cancel,
+) -> Result<(), Refusal> {
+    let timing = plan.timing.as_ref();
+    timing.map_or(Ok(()), |timing| clock::check(plan, timing, robot, options, cancel))
 }
 
 /// [`verify_with`] for a plan of the robot `M`, as its problem describes it.

@@ -92,7 +92,7 @@ pub fn build_with<M: TaskRobot>(
     let robot = Arc::new(robot);
     let goal = goal(problem, &geometry, &supports, &*robot)?;
     let rests_on = geometry.objects.iter().enumerate().map(|(index, o)| supports.holding(index, o.surface));
-    let mode = Mode::resting(rests_on, TRAVEL_GAP);
+    let mode = Mode::resting(rests_on, settings.travel_gap_m);
     let mut world = Tabletop::new(robot, space, objects, supports.all, geometry.scene.bodies(), settings)?
         .with_primitives(&registry.further());
     let start = State {
@@ -154,12 +154,12 @@ fn settings<M: TaskRobot>(
 ) -> Result<ActionSettings<M::Joints>, PlanningError> {
     let push = &problem.push;
     let postures = problem.transit.postures.iter().enumerate().map(|(index, name)| {
-        let unknown = || RobotError::unknown_posture::<M>(format!("transit.postures[{index}]"), name);
-        robot.posture(name).ok_or_else(unknown)
+        let unknown = |known| RobotError::unknown_posture(format!("transit.postures[{index}]"), name, known);
+        robot.posture(name).ok_or_else(|| M::posture_names(&problem.robot).map_or_else(|error| error, unknown))
     });
     Ok(ActionSettings {
         push: PushSettings {
-            gap_m: push.gap_m,
+            gap_m: push.gap_m.min(robot.hand().max_gap_m()),
             fingertip_clearance_m: push.fingertip_clearance_m,
             leans_rad: push.leans_deg.iter().map(|lean| lean.to_radians().min(MAX_LEAN)).collect(),
             standoff_m: push.standoff_m.planned()?,
@@ -190,7 +190,7 @@ fn settings<M: TaskRobot>(
         base_tries: 24,
         grasp_tries: 4,
         postures: postures.collect::<Result<_, RobotError>>()?,
-        travel_gap_m: TRAVEL_GAP,
+        travel_gap_m: TRAVEL_GAP.min(robot.hand().max_gap_m()),
     })
 }
 
@@ -215,18 +215,15 @@ fn goal<M: TaskRobot>(
 
 fn robot_goal<M: TaskRobot>(goal: &file::RobotGoal, robot: &M) -> Result<RobotGoal<M::Joints>, RobotError> {
     let joints = |values: &Vec<f64>| {
-        let mut arm = M::Joints::zeros();
-        let (found, expected) = (values.len(), M::Joints::COUNT);
-        if found != expected {
-            return Err(RobotError::JointCount { key: "goal.robot.joints", found, expected });
-        }
+        let (found, expected) = (values.len(), robot.limits().len());
+        let wrong = RobotError::JointCount { key: "goal.robot.joints", found, expected };
+        let arm = M::Joints::from_values(values).filter(|_| found == expected).ok_or(wrong)?;
         for (i, (value, limit)) in values.iter().zip(robot.limits()).enumerate() {
             if !limit.contains(*value) {
                 let why = format!("has {value} for joint {i}, outside its limits [{}, {}]", limit.lower, limit.upper);
                 return Err(RobotError::Key { key: "goal.robot.joints", why });
             }
         }
-        arm.as_mut().copy_from_slice(values);
         Ok(arm)
     };
     Ok(RobotGoal {

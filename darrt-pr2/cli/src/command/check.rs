@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use crate::args::CheckOptions;
+use crate::diagnosis;
 use crate::exit::{Exit, Failure};
 use crate::output::Output;
 use crate::steps;
 use darrt_task::goal_edges;
 use darrt_task::picture::Story;
-use darrt_task::plan_file::PlanFile;
+use darrt_task::plan_file::{PlanFile, Timing};
 use darrt_task::problem_file::PrimitiveName;
 use darrt_task::program::Program;
 use darrt_task::text::{counted, on_one_line};
@@ -42,22 +43,29 @@ pub(crate) fn run(program: &dyn Program, options: &CheckOptions, output: &mut Ou
     }
     let is_refused = options.strict && !proof.warnings.is_empty();
     if options.json {
-        output.print(&json(&proof, !is_refused)?)?;
+        output.print(&json(&plan, &proof, !is_refused)?)?;
     } else if !options.quiet {
-        let verdict = if is_refused { "right, but not accepted" } else { "accepted" };
+        let verdict = match &plan.partial {
+            _ if is_refused => "right, but not accepted".to_owned(),
+            None => "accepted".to_owned(),
+            partial => {
+                format!("right, but only the beginning of a plan: {}", diagnosis::words::of_parts(partial.as_ref()))
+            }
+        };
         let warnings = proof.warnings.iter().map(|warning| format!("\nwarning:  {warning}"));
-        output.print(&format!("{name}: {verdict}\n{}{}", words(&proof), warnings.collect::<String>()))?;
+        let clock = plan.timing.as_ref().map_or_else(String::new, |timing| format!("\n{}", clock(timing)));
+        output.print(&format!("{name}: {verdict}\n{}{clock}{}", words(&proof), warnings.collect::<String>()))?;
         notices(&plan, output)?;
     }
     if is_refused {
         let count = counted(proof.warnings.len() as u64, "warning");
         return Err(refuse(format!("{count}, and with --strict there may be none")));
     }
-    Ok(Exit::Solved)
+    Ok(if plan.partial.is_some() { Exit::Partial } else { Exit::Solved })
 }
 
 /// What the verifier has seen, for programs: lengths in metres, the numbers of a warning in metres or degrees.
-fn json(proof: &Proof, is_accepted: bool) -> Result<String, Failure> {
+fn json(plan: &PlanFile, proof: &Proof, is_accepted: bool) -> Result<String, Failure> {
     let clearance = |smallest: &SmallestClearance| {
         let SmallestClearance { distance_m, bodies: (a, b), step, time } = smallest;
         serde_json::json!({ "distance_m": distance_m, "bodies": [a, b], "step": step, "time": time })
@@ -69,10 +77,12 @@ fn json(proof: &Proof, is_accepted: bool) -> Result<String, Failure> {
             "message": message })
     });
     let value = serde_json::json!({
-        "accepted": is_accepted,
+        "accepted": is_accepted && plan.partial.is_none(),
+        "partial": plan.partial,
         "steps": proof.steps,
         "waypoints": proof.waypoints,
         "states": proof.states,
+        "duration_s": proof.duration_s,
         "smallest_clearance": proof.smallest_clearance.as_ref().map(clearance),
         "smallest_intended": proof.smallest_intended.as_ref().map(clearance),
         "warnings": warnings.collect::<Vec<_>>(),
@@ -94,7 +104,11 @@ fn written(value: &serde_json::Value) -> Result<String, Failure> {
     text.map_err(|error| Failure::new(Exit::CannotWrite, format!("the verdict cannot be written as JSON: {error}")))
 }
 
-fn read(program: &dyn Program, path: &Path) -> Result<PlanFile, Failure> {
+/// Reads a plan file.
+///
+/// # Errors
+/// [`Exit::BadInput`] with the file, and what is wrong with it.
+pub(crate) fn read(program: &dyn Program, path: &Path) -> Result<PlanFile, Failure> {
     PlanFile::read(path).map_err(|error| {
         let name = path.to_str().filter(|name| !path.exists() && program.problems().find(name).is_some());
         let built_in = |name| format!("{name}: is a built-in problem, not a plan; plan it with `darrt plan {name}`");
@@ -117,6 +131,11 @@ pub(crate) fn words(proof: &Proof) -> String {
         }
     }
     text
+}
+
+/// How long the plan takes.
+pub(crate) fn clock(timing: &Timing) -> String {
+    format!("clock:    {:.1} s at the robot's limits", timing.duration_s)
 }
 
 /// What a person should know besides.

@@ -11,12 +11,15 @@ use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
 use crate::progress::Progress;
 use crate::{diagnosis, drawing, safety, statistics, steps};
+use darrt_task::diagnosis::Diagnosis;
 use darrt_task::picture::{Extent, Format, Story, Travel};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::planning::{PlanRequest, PlanResult};
+use darrt_task::planning_error::PlanningError;
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
-use darrt_task::robot::RobotFacts;
+use darrt_task::replan::{ReplanRequest, Replanned};
+use darrt_task::robot::{RobotError, RobotFacts};
 use darrt_task::text::counted;
 
 /// Plans and reports.
@@ -24,20 +27,23 @@ use darrt_task::text::counted;
 /// # Errors
 /// Every end but a verified plan that is written, with its exit code.
 pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
-    let problem = options.safety.applied(program.open(&options.problem)?, &options.problem)?;
+    let problem = options.safety.applied(opened(program, options, output)?, &options.problem)?;
     let files = Files::choose(options)?;
     let request = request(options, problem);
     let cancel = Cancel::new();
     listen(&cancel);
     let mut progress = Progress::start(&request.problem.name, limit(&request), options.quiet);
-    let result = program
-        .plan(&request, &cancel, &mut progress)
-        .map_err(|error| Failure::input(located(&options.problem, &error.to_string())))?;
+    let (result, kept) = planned(program, options, &request, &cancel, &mut progress)?;
     progress.finish();
+    if let Some(kept) = kept.filter(|_| !options.quiet) {
+        output.print(&kept)?;
+    }
     if options.stats {
         output.print(&statistics::report(&result.accounts))?;
     }
-    let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else { return Err(failed(&request, &result)) };
+    let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else {
+        return Err(failed(program, options, (&request, &result), &files, output)?);
+    };
     let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
     let story = Story::of_plan(plan, &robot)?;
     // First of all: a terminal that has gone away must not cost the plan.
@@ -49,6 +55,11 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
         }
         output.print(&steps::table(&story))?;
         output.print(&check::words(proof))?;
+        match (&plan.timing, &result.no_clock) {
+            (Some(timing), _) => output.print(&check::clock(timing))?,
+            (None, Some(why)) => output.print(&format!("notice:   {why}"))?,
+            (None, None) => {}
+        }
         output.print(&safety::margins(&request.problem))?;
         if !proof.warnings.is_empty() {
             output.print(&safety::notices(&proof.warnings))?;
@@ -61,6 +72,19 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
         output.print(&files.words())?;
     }
     Ok(Exit::Solved)
+}
+
+/// The problem, with the robot that is asked for.
+fn opened(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<ProblemFile, Failure> {
+    let Some(robot) = &options.robot else { return Ok(program.open(&options.problem)?) };
+    let problem = program.problems().open(&options.problem)?;
+    let failed = |error: RobotError| Failure::input(located(&options.problem, &error.to_string()));
+    let (problem, changes) = program.with_robot(problem, robot).map_err(failed)?;
+    program.check(&problem, &options.problem)?;
+    if !options.quiet {
+        changes.iter().try_for_each(|change| output.print(&format!("{}: {change}", problem.name)))?;
+    }
+    Ok(problem)
 }
 
 fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
@@ -79,7 +103,34 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
         bases_from_reachability: false,
         cost: options.cost.clone().map_or_else(Default::default, Into::into),
         changes: Vec::new(),
+        hints: Vec::new(),
     }
+}
+
+/// Plans, from an old plan if there is one; what is kept of that in words.
+fn planned(
+    program: &dyn Program,
+    options: &PlanOptions,
+    request: &PlanRequest,
+    cancel: &Cancel,
+    progress: &mut Progress,
+) -> Result<(PlanResult, Option<String>), Failure> {
+    let refused = |error: PlanningError| refused(options, request, &error);
+    let Some(path) = &options.from else {
+        return Ok((program.plan(request, cancel, progress).map_err(refused)?, None));
+    };
+    let from = check::read(program, path)?;
+    let keep = options.keep.map(|keep| usize::try_from(keep).unwrap_or(usize::MAX));
+    let whole = ReplanRequest { plan: request.clone(), from, keep };
+    let Replanned { result, kept, of, refused: why } = program.replan(&whole, cancel, progress).map_err(refused)?;
+    let steps = counted(of as u64, "step");
+    let kept = match kept {
+        0 => "none is kept".to_owned(),
+        kept if kept == of => "all are kept".to_owned(),
+        kept => format!("the first {kept} are kept"),
+    };
+    let why = why.map_or_else(String::new, |why| format!("; the plan is no longer right: {why}"));
+    Ok((result, Some(format!("from {}: of {steps} {kept}{why}", path.display()))))
 }
 
 fn limit(request: &PlanRequest) -> Option<Duration> {
@@ -97,10 +148,46 @@ fn located(problem: &str, message: &str) -> String {
     if message.contains(problem) { message.to_owned() } else { format!("{problem}: {message}") }
 }
 
-fn failed(request: &PlanRequest, result: &PlanResult) -> Failure {
-    let exit = if result.stop == Stop::Cancelled { Exit::Interrupted } else { Exit::NotSolved };
+/// Tells why there is no plan, and writes the beginning of one if there is any.
+fn failed(
+    program: &dyn Program,
+    options: &PlanOptions,
+    (request, result): (&PlanRequest, &PlanResult),
+    files: &Files,
+    output: &mut Output,
+) -> Result<Failure, Failure> {
     let name = &request.problem.name;
-    Failure::new(exit, format!("{name}: no plan found (seed {}): {}", request.seed, diagnosis::explain(result)))
+    let diagnosis = program
+        .diagnose(request, result)
+        .map_err(|error| Failure::input(located(&options.problem, &error.to_string())))?;
+    write_why(options, &diagnosis)?;
+    if options.stats {
+        output.print(&diagnosis::details(result, &diagnosis))?;
+    }
+    let mut why = diagnosis::explain(result, &diagnosis);
+    let mut exit = if result.stop == Stop::Cancelled { Exit::Interrupted } else { Exit::NotSolved };
+    if let Some((plan, _)) = &result.partial {
+        let path = files.write_partial(program, plan)?;
+        why = format!("{why}\n  {}", diagnosis::words::of_partial(plan, &path));
+        exit = Exit::Partial;
+    }
+    Ok(Failure::new(exit, format!("{name}: no plan found (seed {}): {why}", request.seed)))
+}
+
+/// The error of a problem that cannot be planned; what keeps a plan away is written down as well.
+fn refused(options: &PlanOptions, request: &PlanRequest, error: &PlanningError) -> Failure {
+    let written = Diagnosis::of_error(&request.problem.name, error).map(|diagnosis| write_why(options, &diagnosis));
+    match written {
+        Some(Err(failure)) => failure,
+        _ => Failure::input(located(&options.problem, &error.to_string())),
+    }
+}
+
+/// Writes the diagnosis where `--why` says.
+fn write_why(options: &PlanOptions, diagnosis: &Diagnosis) -> Result<(), Failure> {
+    let Some(path) = &options.why else { return Ok(()) };
+    let text = serde_json::to_string_pretty(diagnosis).map_err(|error| Failure::input(error.to_string()))?;
+    output::write_file(path, (text + "\n").as_bytes())
 }
 
 /// Plans that are improved end with "solved" also when they were interrupted: a plan there is, but it might have been better.
@@ -189,6 +276,17 @@ impl Files {
         }
     }
 
+    /// Writes the beginning of a plan beside where the plan would be, and its picture; says where.
+    fn write_partial(&self, program: &dyn Program, plan: &PlanFile) -> Result<PathBuf, Failure> {
+        let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
+        let path = of_partial(&self.plan);
+        let picture = self.picture.as_ref().map(|(picture, format)| (of_partial(picture), *format));
+        plan.write(&path)?;
+        let files = Self { plan: path.clone(), picture };
+        files.draw(plan, &Story::of_plan(plan, &robot)?, &robot)?;
+        Ok(path)
+    }
+
     fn words(&self) -> String {
         let plan = format!("plan:     {}", self.plan.display());
         match &self.picture {
@@ -196,6 +294,20 @@ impl Files {
             None => plan,
         }
     }
+}
+
+/// Where the beginning of a plan goes that would be written to `path`: `a/b.plan.json` and `a/b.json` have
+/// `a/b.partial.json`. What an earlier run wrote there stays.
+fn of_partial(path: &Path) -> PathBuf {
+    let bare = path.with_extension("");
+    let bare = if bare.extension().is_some_and(|ending| ending == "plan") { bare.with_extension("") } else { bare };
+    let mut name = bare.into_os_string();
+    name.push(".partial");
+    if let Some(ending) = path.extension() {
+        name.push(".");
+        name.push(ending);
+    }
+    PathBuf::from(name)
 }
 
 /// The picture that belongs to a plan file: `a/b.plan.json` and `a/b.json` have `a/b.html`.
@@ -220,6 +332,18 @@ mod tests {
             ("v1.2.json", "v1.2.html"),
         ] {
             assert_eq!(beside(Path::new(plan)), Path::new(picture));
+        }
+    }
+
+    #[test]
+    fn the_beginning_of_a_plan_lies_beside_it() {
+        for (plan, partial) in [
+            ("plate3.plan.json", "plate3.partial.json"),
+            ("a/p.json", "a/p.partial.json"),
+            ("a.b/p", "a.b/p.partial"),
+            ("p.html", "p.partial.html"),
+        ] {
+            assert_eq!(of_partial(Path::new(plan)), Path::new(partial));
         }
     }
 

@@ -1,6 +1,6 @@
 //! The checks `urdf-rs` does not make, and the translation into our own types.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
@@ -14,16 +14,18 @@ use crate::kinematics::limit::JointLimit;
 const FARTHEST: f64 = 1e4;
 
 /// Checks a parsed description and translates it.
-pub(super) fn checked(robot: &urdf_rs::Robot) -> Result<RobotDescription, UrdfError> {
+///
+/// `seen`: the links that have a visual.
+pub(super) fn checked(robot: &urdf_rs::Robot, seen: &BTreeSet<String>) -> Result<RobotDescription, UrdfError> {
     if robot.links.is_empty() {
         return Err(UrdfError::NoLink);
     }
     let link_index = index_names("link", robot.links.iter().map(|l| l.name.as_str()))?;
     let joint_index = index_names("joint", robot.joints.iter().map(|j| j.name.as_str()))?;
-    let links = robot.links.iter().map(link).collect::<Result<Vec<_>, _>>()?;
-    let joints = robot.joints.iter().map(|j| joint(j, &link_index, &joint_index)).collect::<Result<Vec<_>, _>>()?;
+    let links = robot.links.iter().map(|l| link(l, seen)).collect::<Result<Vec<_>, _>>()?;
+    let mut joints = robot.joints.iter().map(|j| joint(j, &link_index, &joint_index)).collect::<Result<Vec<_>, _>>()?;
     let root = single_root(&links, &joints)?;
-    mimics_end(&joints)?;
+    settle_mimics(&mut joints)?;
     Ok(RobotDescription { name: robot.name.clone(), links, joints, root })
 }
 
@@ -41,7 +43,7 @@ fn index_names<'a>(
     Ok(index)
 }
 
-fn link(link: &urdf_rs::Link) -> Result<LinkDescription, UrdfError> {
+fn link(link: &urdf_rs::Link, seen: &BTreeSet<String>) -> Result<LinkDescription, UrdfError> {
     let element = || format!("link {}", link.name);
     let place = |c: &urdf_rs::Collision| {
         Ok(PlacedGeometry {
@@ -52,7 +54,7 @@ fn link(link: &urdf_rs::Link) -> Result<LinkDescription, UrdfError> {
     Ok(LinkDescription {
         name: Arc::from(link.name.as_str()),
         collision: link.collision.iter().map(place).collect::<Result<_, _>>()?,
-        has_visual: !link.visual.is_empty(),
+        has_visual: seen.contains(&link.name),
     })
 }
 
@@ -270,7 +272,46 @@ fn single_root(links: &[LinkDescription], joints: &[JointDescription]) -> Result
     }
 }
 
-/// Every chain of mimic joints ends at a movable joint that mimics none.
+/// Every chain of mimic joints ends at a movable joint that mimics none: what follows a joint that stands still stands still
+/// too, where that says.
+fn settle_mimics(joints: &mut [JointDescription]) -> Result<(), UrdfError> {
+    let mut followers: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
+    for (index, joint) in joints.iter_mut().enumerate() {
+        if joint.kind == JointKind::Fixed {
+            joint.mimic = None;
+        }
+        if let Some(list) = joint.mimic.and_then(|mimic| followers.get_mut(mimic.joint)) {
+            list.push(index);
+        }
+    }
+    // Each joint mimics at most one other, so that each is settled at most once.
+    let fixed = joints.iter().enumerate().filter(|(_, joint)| joint.kind == JointKind::Fixed);
+    // With where each stands: a joint that is fixed in the file at zero.
+    let mut still: Vec<(usize, f64)> = fixed.map(|(index, _)| (index, 0.0)).collect();
+    while let Some((leader, at)) = still.pop() {
+        for follower in followers.get_mut(leader).map(std::mem::take).unwrap_or_default() {
+            let Some(joint) = joints.get_mut(follower) else { continue };
+            let value = joint.mimic.map_or(0.0, |mimic| mimic.multiplier * at + mimic.offset);
+            if value.is_nan() || value.abs() > FARTHEST {
+                let (element, quantity) = (format!("joint {}", joint.name), "value from the joint that it mimics");
+                return Err(UrdfError::OutOfBounds { element, quantity, value, bound: "within 1e4 of zero" });
+            }
+            joint.parent_from_child *= match joint.kind {
+                JointKind::Fixed => Isometry3::identity(),
+                JointKind::Turning => Isometry3::rotation(joint.axis.into_inner() * value),
+                JointKind::Sliding => Isometry3::from(Translation3::from(joint.axis.into_inner() * value)),
+            };
+            (joint.kind, joint.mimic, joint.limit, joint.soft_limit) = (JointKind::Fixed, None, STILL, STILL);
+            still.push((follower, value));
+        }
+    }
+    mimics_end(joints)
+}
+
+/// The limits of a joint that does not move.
+const STILL: JointLimit = JointLimit::new(0.0, 0.0);
+
+/// No joint mimics itself, directly or through others.
 fn mimics_end(joints: &[JointDescription]) -> Result<(), UrdfError> {
     // Per joint: 0 not seen, otherwise the number of the walk that saw it first.
     let mut seen = vec![0_usize; joints.len()];
@@ -280,9 +321,6 @@ fn mimics_end(joints: &[JointDescription]) -> Result<(), UrdfError> {
             let (Some(target), Some(mark)) = (joints.get(mimic.joint), seen.get_mut(mimic.joint)) else {
                 break;
             };
-            if joint.kind == JointKind::Fixed || target.kind == JointKind::Fixed {
-                return Err(UrdfError::MimicFixed { joint: joint.name.to_string(), target: target.name.to_string() });
-            }
             if *mark == walk + 1 {
                 return Err(UrdfError::MimicCycle { joint: target.name.to_string() });
             }

@@ -81,6 +81,16 @@ pub enum UrdfError {
         /// Line of the text, from 1.
         line: u32,
     },
+    /// Something that planning needs is not there.
+    #[error("line {line}: {element} has no {missing}")]
+    Lacks {
+        /// The element.
+        element: String,
+        /// What is missing.
+        missing: &'static str,
+        /// Line of the text, from 1.
+        line: u32,
+    },
     /// A text that xacro has not been run on.
     #[error("line {line}: {found} is left over from xacro; run xacro on the file first")]
     Xacro {
@@ -200,14 +210,6 @@ pub enum UrdfError {
     MimicCycle {
         /// A joint in (or behind) the circle.
         joint: String,
-    },
-    /// A joint mimics one that cannot move, or cannot itself move.
-    #[error("joint {joint:?} mimics {target:?}; both must be movable")]
-    MimicFixed {
-        /// The joint.
-        joint: String,
-        /// The joint it names.
-        target: String,
     },
     /// A joint type this library does not move.
     #[error("joint {joint:?} is {kind}; fixed, revolute, continuous and prismatic joints are supported")]

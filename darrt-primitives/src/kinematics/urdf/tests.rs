@@ -68,7 +68,8 @@ fn names_the_joint_and_the_number() {
         ("<mimic joint='x'/>", "mimicked joint \"x\" does not exist"),
     ];
     for (inside, expected) in cases {
-        let message = error(&robot("revolute", inside, "")).to_string();
+        let kind = if inside.contains("limit") { "revolute" } else { "continuous" };
+        let message = error(&robot(kind, inside, "")).to_string();
         assert!(message.contains(expected), "{inside}: {message}");
     }
     for kind in ["floating", "planar", "spherical"] {
@@ -109,7 +110,65 @@ fn sees_mimic_circles_and_fixed_masters() {
     assert!(matches!(error(&robot("revolute", LIMIT, &circle)), UrdfError::MimicCycle { .. }));
     let chain = joint("k", "b", "j") + &joint("l", "b", "k") + &joint("m", "b", "k");
     assert!(RobotDescription::from_text(&robot("revolute", LIMIT, &chain)).is_ok());
-    assert!(matches!(error(&robot("fixed", "", &chain)), UrdfError::MimicFixed { .. }));
+}
+
+#[test]
+fn what_follows_a_fixed_joint_is_fixed_where_that_says() {
+    let follower = |name: &str, child: &str, leader: &str, offset: f64| {
+        format!(
+            "<link name='{child}'/><joint name='{name}' type='prismatic'><parent link='a'/><child link='{child}'/>\
+             <axis xyz='0 0 1'/>{LIMIT}<mimic joint='{leader}' multiplier='3' offset='{offset}'/></joint>"
+        )
+    };
+    // The second is settled by the first, whichever stands first in the file.
+    let extra = follower("l", "d", "k", 0.25) + &follower("k", "c", "j", 0.5);
+    let robot = RobotDescription::from_text(&robot("fixed", "<mimic joint='k'/>", &extra)).unwrap();
+    assert!(robot.joints.iter().all(|joint| joint.kind == JointKind::Fixed && joint.mimic.is_none()));
+    let heights: Vec<f64> = robot.joints.iter().map(|joint| joint.parent_from_child.translation.z).collect();
+    assert_eq!(heights, [0.0, 1.75, 0.5]);
+}
+
+#[test]
+fn what_planning_does_not_use_never_stops_it() {
+    let text = "<robot name='r'>\n<material name='m'><texture/></material>\n<transmission/><gazebo><link/></gazebo>\n\
+        <link name='a'><inertial><mass value='NaN'/><inertia ixx='lots'/></inertial>\n\
+        <visual><origin xyz='left'/><geometry><mesh/></geometry><material name='&amp;\u{e4}'><texture/></material></visual>\n\
+        <collision><contact_coefficients mu='?'/><geometry><sphere radius='1'/></geometry></collision></link>\n\
+        <link name='b'/><joint name='j' type='continuous'><parent link='a'/><child link='b'/>\n\
+        <dynamics damping='much'/><calibration rising='?'/></joint></robot>";
+    let robot = RobotDescription::from_text(text).unwrap();
+    assert_eq!((robot.links[0].has_visual, robot.links[1].has_visual), (true, false));
+    assert_eq!(robot.links[0].collision.len(), 1);
+}
+
+#[test]
+fn what_it_needs_and_lacks_is_named_with_its_line() {
+    let link = |inside: &str| format!("<robot name='r'>\n<link name='a'>\n{inside}</link></robot>");
+    let joint = |inside: &str, kind: &str| {
+        format!("<robot name='r'><link name='a'/>\n<link name='b'/>\n<joint name='j' {kind}>{inside}</joint></robot>")
+    };
+    let (parent, child) = ("<parent link='a'/>", "<child link='b'/>");
+    for (text, expected) in [
+        ("<robot name='r'>\n<link/></robot>".to_owned(), "line 2: <link> has no `name`"),
+        (link("<collision/>"), "line 3: <collision> of link \"a\" has no <geometry>"),
+        (link("<collision>\n<geometry/></collision>"), "line 4: <geometry> of link \"a\" has no shape"),
+        (link("<collision><geometry><box/></geometry></collision>"), "line 3: <box> of link \"a\" has no `size`"),
+        (
+            link("<collision><geometry><mesh scale='1 1 1'/></geometry></collision>"),
+            "line 3: <mesh> of link \"a\" has no `filename`",
+        ),
+        (joint(&format!("{parent}{child}"), ""), "line 3: <joint> of joint \"j\" has no `type`"),
+        (joint(child, "type='fixed'"), "line 3: <joint> of joint \"j\" has no <parent>"),
+        (joint(&format!("{parent}<child/>"), "type='fixed'"), "line 3: <child> of joint \"j\" has no `link`"),
+        (joint(&format!("{parent}{child}"), "type='revolute'"), "line 3: <joint> of joint \"j\" has no <limit>"),
+        (
+            joint(&format!("{parent}{child}<limit effort='1'/>"), "type='prismatic'"),
+            "line 3: <limit> of joint \"j\" has no `velocity`",
+        ),
+    ] {
+        let message = error(&text).to_string();
+        assert!(message.starts_with(expected), "{message}");
+    }
 }
 
 #[test]

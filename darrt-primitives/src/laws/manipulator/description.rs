@@ -8,8 +8,10 @@ use super::{COUNTS, HAND, LIMITS, LINKS, PAIRS, STRENGTH};
 use crate::manipulator::{JointVector, Manipulator};
 
 pub(super) fn check<M: Manipulator>(robot: &M) -> Result<(), Broken> {
-    equal(COUNTS, &robot.limits().len(), &M::Joints::COUNT).map_err(|broken| broken.of("limits"))?;
-    equal(COUNTS, &robot.joint_weights_m().len(), &M::Joints::COUNT).map_err(|broken| broken.of("weights"))?;
+    let count = robot.limits().len();
+    let fits = M::Joints::zeros(count).is_some_and(|zeros| zeros.as_ref().len() == count);
+    ensure(COUNTS, fits, || format!("{count} limits"), "as many as there are joints").map_err(|b| b.of("limits"))?;
+    equal(COUNTS, &robot.joint_weights_m().len(), &count).map_err(|broken| broken.of("weights"))?;
     for (joint, weight) in robot.joint_weights_m().iter().enumerate() {
         let text = || format!("{weight:?}");
         ensure(COUNTS, weight.is_finite() && *weight > 0.0, text, "a finite positive weight")

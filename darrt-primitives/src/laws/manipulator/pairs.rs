@@ -8,14 +8,14 @@ use super::{SELF_PAIRS, Trial, gap};
 use crate::manipulator::{Configuration, Manipulator};
 
 /// So many joints between two links make them more than neighbours.
-const NEIGHBOURS: usize = 3;
+const NEIGHBOURS: usize = 4;
 /// Links that are farther apart than this do not merely graze each other, metres.
 const APART_M: f64 = 0.01;
 /// A relative pose that changes by less has not changed, metres and radians.
 const SAME: f64 = 1e-9;
 
 impl<M: Manipulator> Trial<'_, M> {
-    /// Links that overlap in one configuration and are apart in the other, with at least three joints between them, are a pair.
+    /// Links that overlap in one configuration and are apart in the other, with at least four joints between them, are a pair.
     /// Those with fewer are neighbours: around a wrist their shapes may overlap.
     pub(super) fn pairs(&self) -> Result<(), Broken> {
         let gap_m = self.gaps_m[0];
@@ -47,7 +47,7 @@ impl<M: Manipulator> Trial<'_, M> {
                     SELF_PAIRS,
                     apart <= APART_M,
                     text,
-                    "a pair, or links with fewer than three joints between them",
+                    "a pair, or links with fewer than four joints between them",
                 )?;
             }
         }

@@ -61,7 +61,15 @@ impl PlanFile {
                 waypoint(at, format_args!("steps[{index}].waypoints[{place}]"))?;
             }
         }
-        Ok(())
+        let phases = self.timing.iter().flat_map(|timing| timing.steps.iter().enumerate());
+        for (index, step) in phases {
+            for (number, phase) in step.phases.iter().enumerate() {
+                let key = || format!("timing.steps[{index}].phases[{number}]");
+                let pieces = phase.profile.iter().flatten().chain(&phase.lengths).chain(&phase.blends);
+                pieces.chain([&phase.wait_s, &phase.rest_s]).try_for_each(|value| numbers(&[*value], key()))?;
+            }
+        }
+        self.timing.as_ref().map_or(Ok(()), |timing| numbers(&[timing.duration_s], "timing.duration_s"))
     }
 }
 

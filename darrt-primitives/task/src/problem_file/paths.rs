@@ -9,6 +9,7 @@ use darrt_primitives::kinematics::RobotDescription;
 
 use super::error::Flaw;
 use super::{ProblemFile, ProblemFileError, ShapeSpec};
+use crate::robot_file::Source;
 
 impl ProblemFile {
     /// Makes relative paths that start at `folder` start at the working folder.
@@ -27,7 +28,9 @@ impl ProblemFile {
 
     /// Whether the problem is complete only together with other files.
     pub(crate) fn names_files(&self) -> bool {
-        self.robot.urdf.is_some() || self.shapes().any(|(_, _, shape)| matches!(shape, ShapeSpec::Mesh { .. }))
+        self.robot.urdf.is_some()
+            || self.robot.file.is_some()
+            || self.shapes().any(|(_, _, shape)| matches!(shape, ShapeSpec::Mesh { .. }))
     }
 
     /// Reads every file that the problem names, and forgets it again: what cannot be read can then be told from what is
@@ -45,6 +48,11 @@ impl ProblemFile {
         if let Some(path) = &self.robot.urdf {
             let flaw = |error| Flaw::Inconsistent(format!("cannot be used: {error}")).at("robot.urdf");
             RobotDescription::from_file(path).map_err(|error| self.located(flaw(error)))?;
+        }
+        if let Some(path) = &self.robot.file {
+            let flaw = |error| Flaw::Inconsistent(format!("cannot be used: {error}")).at("robot.file");
+            let source = Source::read(path).map_err(|error| self.located(flaw(error.to_string())))?;
+            RobotDescription::from_file(&source.urdf()).map_err(|error| self.located(flaw(error.to_string())))?;
         }
         Ok(())
     }
@@ -65,6 +73,7 @@ impl ProblemFile {
                 _ => None,
             })
             .chain(self.robot.urdf.as_mut())
+            .chain(self.robot.file.as_mut())
     }
 }
 

@@ -35,9 +35,12 @@ pub enum Limits {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
-    /// The name of the program's robot; may be left out.
+    /// The name of one of the program's robots; without it and without `file` it is the first of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<String>,
+    /// A robot file, relative to the folder of the problem or plan file that names it: the robot is the one that it describes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<PathBuf>,
     /// A robot description file instead of a built-in model, relative to the folder of the problem or plan file that names
     /// it.
     #[serde(default, skip_serializing_if = "Option::is_none")]

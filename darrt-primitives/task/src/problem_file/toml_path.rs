@@ -8,11 +8,27 @@ use toml::de::{DeTable, DeValue};
 /// `object[0].shape.box.size[1]`; indices count from 0.
 ///
 /// `None` for a place outside all keys and for a text that is not TOML. The nesting of the text must be bounded.
-pub(super) fn path_at(text: &str, place: &Range<usize>) -> Option<String> {
+pub(crate) fn path_at(text: &str, place: &Range<usize>) -> Option<String> {
     let table = DeTable::parse(text).ok()?;
     let mut search = Search { place, best: None };
     search.table(table.get_ref(), "");
     search.best.map(|(_, path)| path)
+}
+
+/// Where the value of `path` stands in a TOML text, as a byte offset; of a path of which only the beginning is there, where that
+/// is. `None` for a path of which nothing is there and for a text that is not TOML.
+pub(crate) fn line_of(text: &str, path: &str) -> Option<usize> {
+    let table = DeTable::parse(text).ok()?;
+    let mut found = None;
+    let mut here = table.get_ref();
+    for part in path.split(['.', '[']) {
+        let inside = here.iter().find(|(key, _)| key.get_ref().as_ref() == part.trim_end_matches(']'));
+        let Some((key, value)) = inside else { break };
+        found = Some(key.span().start);
+        let DeValue::Table(table) = value.get_ref() else { break };
+        here = table;
+    }
+    found
 }
 
 struct Search<'a> {

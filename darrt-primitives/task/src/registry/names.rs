@@ -7,14 +7,13 @@ use crate::problem_file::suggest::{nearest, shown};
 /// The first name that nothing has.
 pub(super) fn unknown(
     problem: &ProblemFile,
-    model: &str,
+    models: &[&str],
     primitives: &[&str],
     postures: &[&str],
     samplers: &[&str],
     distances: &[&str],
 ) -> Option<Located> {
     let robot = &problem.robot;
-    let models = &[model][..];
     let allowed = problem.primitives.iter().enumerate();
     let allowed = allowed.map(|(i, name)| ("primitive", format!("primitives[{i}]"), name.as_str(), primitives));
     let settings = problem.primitive_settings.keys();

@@ -8,21 +8,28 @@ use super::motion::State;
 use super::refusal::{Refusal, RefusalKind};
 use super::robot::{Robot, world_from_robot};
 use super::world::{Movable, World};
+use crate::plan_file::Partial;
 use crate::problem_file::{GoalState, GoalTarget, ObjectGoal, ProblemFile, RobotGoal, Symmetry};
 use crate::robot::RobotFacts;
 
-/// Checks the goals of every object: one of its alternatives must hold.
+/// Checks the goals of every object: one of its alternatives must hold, but for what a partial plan leaves to do.
 pub(super) fn check(
     problem: &ProblemFile,
+    partial: Option<&Partial>,
     world: &World<'_>,
     (robot, facts): (&Robot, &RobotFacts),
     end: &State,
     modes: &[Mode],
 ) -> Result<(), Refusal> {
-    if let Some(flaw) = problem.goal.robot.as_ref().and_then(|goal| robot_flaw(goal, robot, facts, end)) {
+    if let Some(partial) = partial {
+        check_parts(problem, partial)?;
+    }
+    let robot_goal = problem.goal.robot.as_ref().filter(|_| partial.is_none_or(|partial| !partial.robot_remains));
+    if let Some(flaw) = robot_goal.and_then(|goal| robot_flaw(goal, robot, facts, end)) {
         return Err(Refusal::whole(RefusalKind::Goal, format!("the goal does not hold: {flaw}")));
     }
-    for (name, alternatives) in problem.goal.by_object() {
+    let remains = |name: &str| partial.is_some_and(|partial| partial.remains.iter().any(|other| other == name));
+    for (name, alternatives) in problem.goal.by_object().into_iter().filter(|(name, _)| !remains(name)) {
         let refuse = |message: String| Refusal::whole(RefusalKind::Goal, format!("the goal does not hold: {message}"));
         let object = world.object(name).ok_or_else(|| refuse(format!("there is no object `{name}`")))?;
         let (Some(pose), Some(mode), Some(movable)) =
@@ -43,6 +50,33 @@ pub(super) fn check(
         if !flaws.is_empty() {
             return Err(refuse(format!("`{name}` {}", flaws.join("; or "))));
         }
+    }
+    Ok(())
+}
+
+/// A partial plan says of every part of the goal whether it is met, and leaves something to do.
+fn check_parts(problem: &ProblemFile, partial: &Partial) -> Result<(), Refusal> {
+    let refuse = |message: String| Err(Refusal::whole(RefusalKind::Malformed, format!("`partial`: {message}")));
+    let goals = problem.goal.by_object();
+    let is_goal = |name: &str| goals.iter().any(|(other, _)| *other == name);
+    let mut named = Vec::new();
+    for name in partial.met.iter().chain(&partial.remains) {
+        if !is_goal(name) {
+            return refuse(format!("`{name}` has no goal"));
+        }
+        if named.contains(&name.as_str()) {
+            return refuse(format!("`{name}` is named twice"));
+        }
+        named.push(name.as_str());
+    }
+    if let Some((name, _)) = goals.iter().find(|(name, _)| !named.contains(name)) {
+        return refuse(format!("it says nothing of `{name}`"));
+    }
+    if partial.robot_remains && problem.goal.robot.is_none() {
+        return refuse("the robot has no goal".to_owned());
+    }
+    if partial.remains.is_empty() && !partial.robot_remains {
+        return refuse("nothing remains, so it is no partial plan".to_owned());
     }
     Ok(())
 }

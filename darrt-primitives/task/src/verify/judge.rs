@@ -23,6 +23,7 @@ use super::options::VerifyOptions;
 use super::refusal::{Refusal, RefusalKind, Site};
 use super::robot::{Robot, world_from_robot};
 use super::stage::{Hit, PairKind, Rule, Stage};
+use super::steer;
 use super::world::World;
 use super::{Proof, near, start};
 use crate::plan_file::{PlanFile, Step, Waypoint};
@@ -138,10 +139,21 @@ impl<'a> Judge<'a> {
         let mut last = &self.plan.start;
         for (number, step) in (1..).zip(&self.plan.steps) {
             let site = self.site(number, step)?;
+            let before = (!self.plan.problem.steers.is_empty()).then(|| here.clone());
             here = self.step(site, step, last, here)?;
+            if let Some(before) = before {
+                steer::check(&self.plan.problem.steers, site, step, (&self.world, &self.robot), (&before, &here))?;
+            }
             last = step.waypoints.last().unwrap_or(last);
         }
-        goal::check(&self.plan.problem, &self.world, (&self.robot, self.facts), &here, &self.modes)?;
+        goal::check(
+            &self.plan.problem,
+            self.plan.partial.as_ref(),
+            &self.world,
+            (&self.robot, self.facts),
+            &here,
+            &self.modes,
+        )?;
         let warnings = self.warnings(&here);
         let [robot, held, object, itself, near] = self.stage.smallest;
         let unintended = [robot, held, object, itself].into_iter().flatten();
@@ -152,6 +164,7 @@ impl<'a> Judge<'a> {
             exact_tests: self.stage.exact_tests,
             smallest_clearance: unintended.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m)),
             smallest_intended: near,
+            duration_s: None,
             warnings,
         })
     }

@@ -79,7 +79,7 @@ pub(super) struct Segment<'a> {
 pub(super) struct Changes {
     pub(super) base: bool,
     pub(super) arm: bool,
-    /// By how much the hand opens, radians of its finger joint.
+    /// By how much the hand opens, metres, as if the gap grew evenly over the range of its joint.
     pub(super) finger: f64,
     /// A joint that nothing may move.
     pub(super) parked: Option<usize>,
@@ -165,7 +165,7 @@ impl<'a> Segment<'a> {
         Changes {
             base: self.from.base != self.to.base,
             arm: moved(Role::Arm).is_some(),
-            finger: self.joints.get(robot.finger_joint).copied().unwrap_or(0.0),
+            finger: self.joints.get(robot.finger_joint).copied().unwrap_or(0.0) * robot.gap_rate,
             parked: moved(Role::Parked),
         }
     }

@@ -40,6 +40,8 @@ pub enum RefusalKind {
     Grasp,
     /// The tool leaves the straight line that the primitive promises.
     StraightLine,
+    /// A step does what a rule of the problem forbids.
+    Steer,
     /// A push that does not go as pushes go.
     Push,
     /// An object does not stand on a surface where it must.
@@ -54,6 +56,18 @@ pub enum RefusalKind {
     Edge,
     /// The goal does not hold at the end.
     Goal,
+    /// The clock is none for this plan.
+    Clock,
+    /// A joint or the base is faster than it may be.
+    Velocity,
+    /// A joint or the base accelerates harder than it may.
+    Acceleration,
+    /// The acceleration of a joint or of the base changes faster than it may.
+    Jerk,
+    /// The hand is faster, or accelerates harder, than what it is doing allows.
+    Pace,
+    /// The robot does not stand as long as it must around a grasp or a contact.
+    Wait,
     /// Nothing is known to be wrong: the judgement was given up.
     Cancelled,
 }

@@ -53,6 +53,10 @@ pub(super) struct Robot {
     pub(super) hand: Vec<usize>,
     /// The variable that opens the manipulating hand.
     pub(super) finger_joint: usize,
+    /// By how much the gap between the tips grows per unit of that variable, metres; negative in a hand that closes as it grows.
+    pub(super) gap_rate: f64,
+    /// The base never moves.
+    pub(super) is_bolted: bool,
     /// Links that move with the manipulating arm or its fingers, in ascending order.
     arm_links: Vec<usize>,
     pub(super) strength: Strength,
@@ -111,6 +115,7 @@ impl Robot {
         let wrist = facts.arm_joints.last().ok_or_else(|| refuse(&"its arm has no joints"))?;
         let wrist = variable(wrist)?;
         let hand = links_moved(&tree, |variable| variable == wrist);
+        let gap_rate = gap_rate(&tree, &solids, tool, tips, finger_joint);
         let strength = Strength {
             pad_length_m: facts.pad_length_m,
             grip_force_n: facts.grip_force_n,
@@ -129,6 +134,8 @@ impl Robot {
             tips,
             hand,
             finger_joint,
+            gap_rate,
+            is_bolted: facts.is_bolted,
             arm_links,
             strength,
         })
@@ -234,6 +241,27 @@ impl Robot {
         }
         rates
     }
+}
+
+/// By how much the distance of the tips along the tool's y axis grows per unit of the finger joint, over its whole range.
+fn gap_rate(tree: &KinematicTree, solids: &[LinkSolid], tool: usize, tips: [usize; 2], finger: usize) -> f64 {
+    let mut poses = vec![Isometry3::identity(); tree.link_count()];
+    let mut width_at = |value: f64| {
+        let mut values = tree.neutral();
+        if let Some(slot) = values.get_mut(finger) {
+            *slot = value;
+        }
+        let written = tree.forward(&values, &Isometry3::identity(), &mut poses);
+        debug_assert!(written.is_ok(), "{written:?}");
+        let [left, right] = tips.map(|tip| {
+            let solid = solids.iter().find(|solid| solid.link == tip);
+            let link_from_solid = solid.map_or(Isometry3::identity(), |solid| solid.link_from_solid);
+            (poses[tool].inverse() * poses[tip] * link_from_solid).translation.y
+        });
+        left - right
+    };
+    let Some(limit) = tree.variables().get(finger).map(|variable| variable.limit) else { return 0.0 };
+    (width_at(limit.upper) - width_at(limit.lower)) / (limit.upper - limit.lower)
 }
 
 /// The links that one of these variables moves, in ascending order.

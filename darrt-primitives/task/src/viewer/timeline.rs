@@ -6,8 +6,11 @@ use nalgebra::Isometry3;
 use super::ViewerError;
 use super::data::{self, HoldData, JointTrack, ObjectTrack, StartData, StepData, rounded};
 use super::scene::RobotModel;
+use crate::clock::check::check;
+use crate::clock::waypoint_times_s;
 use crate::picture::model::world_from_base;
 use crate::picture::{self, palette};
+use crate::plan_file::timing::StepTiming;
 use crate::plan_file::{ContactReason, PlanFile, Step, Waypoint};
 use crate::problem_file::ProblemFile;
 
@@ -15,6 +18,8 @@ use crate::problem_file::ProblemFile;
 const JOINT_PACE: f64 = 0.35;
 /// What goes from one waypoint to the next takes at least so long, seconds: each can be stopped at.
 const SHORTEST_S: f64 = 0.01;
+/// The same by a clock, which knows better.
+const SHORTEST_BY_CLOCK_S: f64 = 0.001;
 /// How fast the base drives (m/s) and turns (rad/s) then,
 const BASE_PACE: [f64; 2] = [0.3, 0.6];
 /// and how fast something is pushed at most, m/s.
@@ -68,6 +73,7 @@ pub(super) struct Act<'a> {
     pub(super) object: Option<usize>,
     pub(super) pushes: Option<usize>,
     pub(super) holds: Option<(usize, Isometry3<f64>)>,
+    clock: Option<&'a StepTiming>,
 }
 
 /// The steps of a plan.
@@ -76,6 +82,8 @@ pub(super) struct Act<'a> {
 /// A step names an object that the problem does not have or a primitive without a contract, has less than two waypoints, or
 /// one of them lacks something.
 pub(super) fn acts<'a>(plan: &'a PlanFile, robot: &RobotModel) -> Result<Vec<Act<'a>>, ViewerError> {
+    // What is drawn need not be right: a clock that is none is not followed.
+    let clock = plan.timing.as_ref().filter(|timing| check(plan, timing).is_ok());
     let act = |(index, step): (usize, &'a Step)| {
         let place = || format!("steps[{index}]");
         let find = |name: &str| {
@@ -104,6 +112,7 @@ pub(super) fn acts<'a>(plan: &'a PlanFile, robot: &RobotModel) -> Result<Vec<Act
             object: step.object.as_deref().map(find).transpose()?,
             pushes: step.pushes.as_deref().map(find).transpose()?,
             holds: holds.transpose()?,
+            clock: clock.and_then(|clock| clock.steps.get(index)),
         })
     };
     plan.steps.iter().enumerate().map(act).collect()
@@ -142,9 +151,17 @@ impl Act<'_> {
         }
     }
 
-    /// Seconds to each waypoint at an even, calm pace: a plan has no clock.
+    /// Seconds to each waypoint: by the plan's clock, or, if it has none, at an even, calm pace.
     pub(super) fn times(&self, robot: &RobotModel) -> Vec<f64> {
         let mut now = 0.0;
+        if let Some(clock) = self.clock {
+            let mut times = waypoint_times_s(clock, self.moments.len(), |from, to, at| self.share(robot, from, to, at));
+            for time in times.iter_mut().skip(1) {
+                now = time.max(now + SHORTEST_BY_CLOCK_S);
+                *time = data::to(now, 1e3);
+            }
+            return times;
+        }
         let mut times = vec![now];
         for pair in self.moments.windows(2) {
             if let [from, to] = pair {
@@ -153,6 +170,23 @@ impl Act<'_> {
             times.push(data::to(now, 1e3));
         }
         times
+    }
+
+    /// What part of the straight line between two waypoints is gone at a third.
+    fn share(&self, robot: &RobotModel, from: usize, to: usize, at: usize) -> f64 {
+        let (Some(a), Some(b), Some(p)) = (self.moments.get(from), self.moments.get(to), self.moments.get(at)) else {
+            return 0.0;
+        };
+        let ways = |end: &Moment| {
+            let joints = a.joints.iter().zip(&end.joints).zip(robot.tree.variables());
+            let joints =
+                joints.map(|((a, b), variable)| if variable.limit.is_unlimited() { wrap_to_pi(b - a) } else { b - a });
+            let [x, y, yaw] = [0, 1, 2].map(|i| end.base[i] - a.base[i]);
+            [x, y, wrap_to_pi(yaw)].into_iter().chain(joints).collect::<Vec<_>>()
+        };
+        let (whole, part) = (ways(b), ways(p));
+        let farthest = whole.iter().zip(&part).max_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
+        farthest.map_or(0.0, |(whole, part)| if *whole == 0.0 { 0.0 } else { (part / whole).clamp(0.0, 1.0) })
     }
 
     fn seconds(&self, robot: &RobotModel, from: &Moment, to: &Moment) -> f64 {

@@ -46,8 +46,10 @@ pub(in crate::plan_file) fn sample() -> PlanFile {
             restarts: 1,
             nodes: 5,
         },
+        partial: None,
         start: at,
         steps: vec![step],
+        timing: None,
     }
 }
 

@@ -13,15 +13,19 @@ const MOST_ENTRIES: usize = 64;
 /// Farthest turn of an object in one push, degrees.
 const MOST_TURN_DEG: f64 = 120.0;
 
+/// Most rules that steer a plan.
+const MOST_RULES: usize = 64;
+
 /// Most leans of a pushing hand.
 const MOST_LEANS: usize = 16;
 
 /// Largest distance of `[safety]` (m).
 const LARGEST_MARGIN: f64 = 0.5;
 
-/// Checks primitives, safety, push, place, sampling, transit and budget.
+/// Checks primitives, steer, safety, push, place, sampling, transit and budget.
 pub(super) fn check(problem: &ProblemFile) -> Result<(), Located> {
     check_primitives(&problem.primitives)?;
+    check_steers(problem)?;
     check_safety(&problem.safety)?;
     check_push(&problem.push)?;
     check_place(&problem.place)?;
@@ -34,6 +38,38 @@ pub(super) fn check(problem: &ProblemFile) -> Result<(), Located> {
     for (name, count) in counts {
         if count == Some(0) {
             positive(&format!("budget.{name}"), 0.0)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_steers(problem: &ProblemFile) -> Result<(), Located> {
+    length("steer", problem.steers.len(), 0, MOST_RULES)?;
+    for (index, rule) in problem.steers.iter().enumerate() {
+        let key = |name: &str| format!("steer[{index}]{name}");
+        if let Some(name) = rule.object.as_deref().filter(|name| problem.object(name).is_none()) {
+            return Err(Flaw::Inconsistent(format!("is `{name}`, and there is no such object")).at(key(".object")));
+        }
+        if let Some(name) = rule.primitive.as_ref().filter(|name| !problem.allows(name)) {
+            let text = format!("is `{name}`, which is not among the `primitives`");
+            return Err(Flaw::Inconsistent(text).at(key(".primitive")));
+        }
+        if let Some([from, to]) = rule.from_deg {
+            within(&key(".from_deg[0]"), from, -360.0, 360.0)?;
+            within(&key(".from_deg[1]"), to, -360.0, 360.0)?;
+            ordered(&key(".from_deg"), [from, to])?;
+        }
+        for (name, region) in [(".base", &rule.base), (".not_base", &rule.not_base)] {
+            let Some(region) = region else { continue };
+            for (axis, letter) in ["x", "y"].into_iter().enumerate() {
+                let range = [region.min, region.max].map(|corner| corner.get(axis).copied().unwrap_or(0.0));
+                ordered(&format!("{}: {letter} of min and max", key(name)), range)?;
+            }
+        }
+        let says = rule.forbid || rule.from_deg.is_some() || rule.base.is_some() || rule.not_base.is_some();
+        if !says {
+            let text = "says nothing: give `forbid`, `from_deg`, `base` or `not_base`".to_owned();
+            return Err(Flaw::Inconsistent(text).at(key("")));
         }
     }
     Ok(())

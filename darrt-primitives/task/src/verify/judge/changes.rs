@@ -8,8 +8,8 @@ use crate::verify::motion::{Changes, Segment};
 use crate::verify::refusal::{Refusal, RefusalKind};
 use crate::verify::robot::Role;
 
-/// How far the finger joint opens at least to let go, radians: about a millimetre of gap.
-const LET_GO_RAD: f64 = 0.005;
+/// How far the hand opens at least to let go, metres.
+const LET_GO_M: f64 = 8e-4;
 
 impl<'a> Judge<'a> {
     /// Only what the step moves differs between the ends of a segment.
@@ -23,6 +23,9 @@ impl<'a> Judge<'a> {
         let changes = segment.changes(&self.robot);
         if let Some(joint) = changes.parked {
             return stray(format!("`{}` moves, but must stand still", self.robot.joint_name(joint)));
+        }
+        if changes.base && self.robot.is_bolted {
+            return stray("the base moves, which is bolted down".to_owned());
         }
         if changes.base && !site.contract.drives() {
             return stray(format!("the base moves in {}", site.primitive));
@@ -72,7 +75,7 @@ fn check_finger(trial: &Trial<'_>, place: Place, changes: Changes) -> Result<(),
             refuse("must close between the first two waypoints of the step that takes an object")
         }
         HandUse::Takes if !place.is_first() && opens != 0.0 => refuse("opens or closes after it has picked"),
-        HandUse::LetsGo if place.is_last() && opens < LET_GO_RAD => {
+        HandUse::LetsGo if place.is_last() && opens < LET_GO_M => {
             refuse("must open between the last two waypoints of the step that lets go of an object")
         }
         HandUse::LetsGo if !place.is_last() && opens != 0.0 => refuse("opens or closes before it has placed"),

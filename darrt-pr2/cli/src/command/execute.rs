@@ -1,0 +1,138 @@
+//! `darrt execute`: a plan in physics.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use darrt_core::budget::Cancel;
+use darrt_execute::noise::REAL_NOISE;
+use darrt_execute::{Departure, Execution, NoiseModel, Runs, execute};
+
+use super::{check, plan as planning};
+use crate::args::ExecuteOptions;
+use crate::bench::machine::cores;
+use crate::exit::{Exit, Failure};
+use crate::output::Output;
+use crate::progress::Bar;
+use crate::table;
+use darrt_task::program::Program;
+use darrt_task::text::counted;
+use darrt_task::text_file;
+
+/// How often a plan is executed when its runs differ.
+const NOISY_RUNS: u64 = 100;
+/// Largest accepted noise file, bytes.
+const MOST_NOISE_BYTES: u64 = 64 * 1024;
+
+/// Executes a plan and tells how often it succeeded, and what went wrong first.
+///
+/// # Errors
+/// [`Exit::NotSolved`] if a run fails; [`Exit::BadInput`] for a plan or noise that cannot be executed.
+pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut Output) -> Result<Exit, Failure> {
+    let Some(path) = options.plan.as_deref() else {
+        output.print(REAL_NOISE)?;
+        return Ok(Exit::Solved);
+    };
+    let noise = noise(&options.noise)?;
+    let plan = check::read(program, path)?;
+    let name = path.display();
+    let refuse = |error: &dyn std::fmt::Display| Failure::input(format!("{name}: {error}"));
+    plan.problem.check_files().map_err(|error| refuse(&error))?;
+    plan.check_complete().map_err(|flaw| refuse(&flaw))?;
+    let robot = program.facts(&plan.problem).map_err(|error| refuse(&error))?;
+    let execution = Execution::new(&plan, &robot).map_err(|error| refuse(&error))?;
+    let count = options.runs.unwrap_or(if noise.is_none() { 1 } else { NOISY_RUNS });
+    let cancel = Cancel::new();
+    planning::listen(&cancel);
+    let bar = Bar::start(usize::try_from(count).unwrap_or(usize::MAX), "runs", options.quiet);
+    let successes = AtomicUsize::new(0);
+    let threads = options.threads.unwrap_or_else(cores);
+    let runs = execute(&execution, &noise, (options.seed, count), threads, &cancel, &|report| {
+        let so_far = successes.fetch_add(usize::from(report.is_success), Ordering::Relaxed);
+        bar.advance(&format!(", {} succeeded", so_far + usize::from(report.is_success)));
+    });
+    bar.finish();
+    if options.json {
+        output.print(&json(&runs, &noise, options.seed, count, execution.duration_s())?)?;
+    } else if !options.quiet {
+        output.print(&words(&runs, execution.duration_s()))?;
+    }
+    if !runs.is_complete {
+        let left = counted(count - runs.runs.len() as u64, "run");
+        return Err(Failure::new(Exit::Interrupted, format!("{name}: interrupted, {left} left")));
+    }
+    let failed = runs.runs.len() - runs.successes();
+    if failed == 0 {
+        return Ok(Exit::Solved);
+    }
+    let of = counted(count, "run");
+    Err(Failure::new(Exit::NotSolved, format!("{name}: executed: {failed} of {of} failed")))
+}
+
+/// A part of the built-in noise, or a file.
+fn noise(text: &str) -> Result<NoiseModel, Failure> {
+    let whole = || NoiseModel::real().map_err(|error| Failure::input(error.to_string()));
+    match text.parse::<f64>() {
+        Ok(part) if (0.0..=1.0).contains(&part) => Ok(whole()?.scaled(part)),
+        Ok(part) => Err(Failure::input(format!("--noise is {part}, must be from 0 to 1, or the name of a file"))),
+        Err(_) => {
+            let read = text_file::read(Path::new(text), MOST_NOISE_BYTES);
+            let read = read.map_err(|error| Failure::input(format!("--noise: {error}")))?;
+            NoiseModel::from_toml(&read, text).map_err(|error| Failure::input(error.to_string()))
+        }
+    }
+}
+
+fn json(runs: &Runs, noise: &NoiseModel, seed: u64, count: u64, plan_s: f64) -> Result<String, Failure> {
+    let value = serde_json::json!({
+        "asked": count,
+        "complete": runs.is_complete,
+        "seed": seed,
+        "noise": noise,
+        "plan_seconds": plan_s,
+        "successes": runs.successes(),
+        "within_5_cm": runs.near(),
+        "failures": runs.failures(),
+        "runs": runs.runs,
+    });
+    let text = serde_json::to_string_pretty(&value);
+    text.map_err(|error| Failure::new(Exit::CannotWrite, format!("the runs cannot be written as JSON: {error}")))
+}
+
+fn words(runs: &Runs, plan_s: f64) -> String {
+    let all = runs.runs.len();
+    let head = format!(
+        "executed: {} of {} succeeded, {} within 5 cm; {plan_s:.0} s on the clock of the plan",
+        runs.successes(),
+        counted(all as u64, "run"),
+        runs.near(),
+    );
+    let failures = runs.failures();
+    if failures.is_empty() {
+        return head;
+    }
+    let mut table = table::with_header(["runs", "step", "primitive", "what went wrong first", "of what"]);
+    for failure in &failures {
+        table.add_row([
+            failure.count.to_string(),
+            failure.step.to_string(),
+            failure.primitive.clone(),
+            failure.cause.words().to_owned(),
+            failure.bodies.clone(),
+        ]);
+    }
+    let first = runs.runs.iter().find(|run| !run.is_success);
+    let first = first.and_then(|run| Some(format!("\nrun {}: {}", run.run, sentence(run.departure.as_ref()?))));
+    format!("{head}\n{}{}", table::finished(table, [0, 1]), first.unwrap_or_default())
+}
+
+/// One departure in a sentence.
+fn sentence(departure: &Departure) -> String {
+    let Departure { step, primitive, time, cause, body, other, off_m, lean_deg, force_n } = departure;
+    let other = other.as_ref().map_or_else(String::new, |other| format!(" and {other}"));
+    let mut numbers = vec![format!("{:.1} mm", off_m * 1000.0), format!("{lean_deg:.1} degrees")];
+    if *force_n > 0.0 {
+        numbers.push(format!("{force_n:.0} N"));
+    }
+    let (percent, numbers) = (time * 100.0, numbers.join(", "));
+    format!("step {step} ({primitive}) at {percent:.0} %: {body}{other}: {}: {numbers}", cause.words())
+}

@@ -1,0 +1,33 @@
+//! Plans executed in physics before they are real, for any robot.
+//!
+//! | question | file |
+//! |---|---|
+//! | what is executed, and how did it go? | [`run`] |
+//! | how are many runs done? | [`runs`] |
+//! | what may be off? | [`noise`] |
+//! | what went wrong first? | [`watch`] |
+//! | is it where it should be? | [`goal`] |
+//! | when is the robot where? | `timeline` |
+//! | what is the world made of? | `stage`, `solids`, `robot`, `fingers` |
+//!
+//! Metres, kilograms, seconds, radians; the floor is z = 0, z up. The engine is rapier; its types stay inside.
+
+pub mod error;
+mod fingers;
+pub mod goal;
+#[cfg(test)]
+mod known_cases;
+pub mod noise;
+mod robot;
+pub mod run;
+pub mod runs;
+mod solids;
+mod stage;
+mod timeline;
+pub mod watch;
+
+pub use error::ExecuteError;
+pub use noise::{NoiseError, NoiseModel};
+pub use run::{Execution, RunReport};
+pub use runs::{Runs, execute};
+pub use watch::{Cause, Departure};

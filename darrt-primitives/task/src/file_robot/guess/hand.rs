@@ -1,0 +1,199 @@
+//! Where the hand is, which joint opens it, and where its tool frame goes.
+
+use std::path::PathBuf;
+
+use darrt_geom::Body;
+use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
+use darrt_primitives::kinematics::{RobotDescription, link_bodies};
+use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
+
+/// How far the tool frame lies before the end of the tips, metres.
+const BEHIND_TIPS_M: f64 = 0.02;
+/// Longest pad that is guessed, metres, and its share of the finger.
+const PAD_M: f64 = 0.03;
+const PAD_SHARE: f64 = 0.5;
+/// A finger has at most so many joints.
+const MOST_FINGER_JOINTS: usize = 3;
+
+/// A hand with two fingers.
+#[derive(Debug, Clone)]
+pub(super) struct HandGuess {
+    pub(super) link: String,
+    pub(super) xyz: [f64; 3],
+    pub(super) rpy: [f64; 3],
+    pub(super) joint: String,
+    pub(super) tips: [String; 2],
+    /// Joints that must follow, with their factor.
+    pub(super) follow: Vec<(String, f64)>,
+    pub(super) pad_length_m: f64,
+}
+
+/// One finger: the links below one child of the hand.
+struct Finger {
+    tip: usize,
+    /// Variables that move it.
+    variables: Vec<usize>,
+}
+
+/// The hand farthest out, or why there is none.
+pub(super) fn guess(
+    description: &RobotDescription,
+    mesh_path: &dyn Fn(&str) -> Option<PathBuf>,
+) -> Result<HandGuess, String> {
+    let tree = KinematicTree::new(description).map_err(|error| error.to_string())?;
+    let bodies = link_bodies(description, &tree, mesh_path).map_err(|error| error.to_string())?;
+    let none = "has no link with two fingers at the end of an arm: two parts with a shape, each moved by a joint of its own; \
+                write the robot file by hand";
+    let candidates = (0..tree.link_count()).filter_map(|link| {
+        let mut fingers: Vec<_> = children(&tree, link).filter_map(|child| finger(&tree, &bodies, child)).collect();
+        (fingers.len() >= 2).then(|| {
+            fingers.truncate(2);
+            (joints_above(&tree, link), link, fingers)
+        })
+    });
+    // Of two arms the first.
+    let best = candidates.reduce(|best, next| if next.0 > best.0 { next } else { best });
+    let (_, link, fingers) = best.filter(|(above, ..)| *above > 0).ok_or_else(|| none.to_owned())?;
+    let [Some(first), Some(second)] = [fingers.first(), fingers.get(1)] else { return Err(none.to_owned()) };
+    describe(&tree, &bodies, link, [first, second]).ok_or_else(|| none.to_owned())
+}
+
+fn children(tree: &KinematicTree, link: usize) -> impl Iterator<Item = usize> + '_ {
+    (1..tree.link_count()).filter(move |child| tree.parent(*child) == Some(link))
+}
+
+fn variable_of(tree: &KinematicTree, link: usize) -> Option<usize> {
+    match tree.motion(link)? {
+        LinkMotion::Turning { drive, .. } | LinkMotion::Sliding { drive, .. } => Some(drive.variable),
+        LinkMotion::Fixed => None,
+    }
+}
+
+fn joints_above(tree: &KinematicTree, mut link: usize) -> usize {
+    let mut count = 0;
+    loop {
+        count += usize::from(variable_of(tree, link).is_some());
+        match tree.parent(link) {
+            Some(parent) => link = parent,
+            None => return count,
+        }
+    }
+}
+
+/// The part of the robot below `top`, if it is like a finger.
+fn finger(tree: &KinematicTree, bodies: &[Option<Body>], top: usize) -> Option<Finger> {
+    let mut below = vec![top];
+    let mut at = 0;
+    while let Some(link) = below.get(at).copied() {
+        below.extend(children(tree, link));
+        at += 1;
+    }
+    let moving = below.iter().filter(|link| variable_of(tree, **link).is_some()).count();
+    if moving == 0 || moving > MOST_FINGER_JOINTS {
+        return None;
+    }
+    let mut variables: Vec<_> = below.iter().filter_map(|link| variable_of(tree, *link)).collect();
+    variables.sort_unstable();
+    variables.dedup();
+    let is_bounded = variables.iter().all(|variable| {
+        tree.variables().get(*variable).is_some_and(|v| v.limit.lower.is_finite() && v.limit.upper.is_finite())
+    });
+    let is_moved = |mut link: usize| loop {
+        if variable_of(tree, link).is_some() {
+            return true;
+        }
+        match tree.parent(link) {
+            Some(parent) if link != top => link = parent,
+            _ => return false,
+        }
+    };
+    let has_shape = |link: &usize| bodies.get(*link).is_some_and(Option::is_some);
+    let tip = below.iter().copied().filter(has_shape).rfind(|link| is_moved(*link))?;
+    is_bounded.then_some(Finger { tip, variables })
+}
+
+fn describe(tree: &KinematicTree, bodies: &[Option<Body>], hand: usize, fingers: [&Finger; 2]) -> Option<HandGuess> {
+    let name = |link: usize| tree.link_names().get(link).map(ToString::to_string);
+    let joint_name = |variable: usize| tree.variables().get(variable).map(|v| v.name.to_string());
+    let driver = *fingers[0].variables.first()?;
+    let mut others: Vec<usize> = fingers.iter().flat_map(|finger| finger.variables.iter().copied()).collect();
+    others.sort_unstable();
+    others.dedup();
+    others.retain(|variable| *variable != driver);
+    // Both fingers half open: each at the middle of its joints.
+    let limit = |variable: usize| tree.variables().get(variable).map(|v| v.limit);
+    let mut values = tree.neutral();
+    for variable in std::iter::once(driver).chain(others.iter().copied()) {
+        let limit = limit(variable)?;
+        *values.get_mut(variable)? = f64::midpoint(limit.lower, limit.upper);
+    }
+    let mut poses = vec![Isometry3::identity(); tree.link_count()];
+    tree.forward(&values, &Isometry3::identity(), &mut poses).ok()?;
+    let hand_from_world = poses.get(hand)?.inverse();
+    let tips = fingers.map(|finger| finger.tip);
+    let [a, b] = tips.map(|tip| box_of(bodies, &poses, &hand_from_world, tip));
+    let (a, b) = (a?, b?);
+    let centre = |(low, high): (Vector3<f64>, Vector3<f64>)| (low + high) / 2.0;
+    // Fingers open along the axis of the hand along which they are farthest apart.
+    let apart = centre(a) - centre(b);
+    let y = apart.map(|x| if x.abs() == apart.amax() { x.signum() } else { 0.0 });
+    // They reach out along that of the others along which they are farthest from the hand's own origin.
+    let middle = (centre(a) + centre(b)) / 2.0;
+    let out = middle - y * middle.dot(&y);
+    let x = out.map(|v| if v.abs() == out.amax() && v != 0.0 { v.signum() } else { 0.0 });
+    if (x.norm() - 1.0).abs() > 1e-9 || (y.norm() - 1.0).abs() > 1e-9 {
+        return None;
+    }
+    let end = [a, b].iter().map(|(low, high)| low.dot(&x).max(high.dot(&x))).fold(f64::NEG_INFINITY, f64::max);
+    let start = [a, b].iter().map(|(low, high)| low.dot(&x).min(high.dot(&x))).fold(f64::INFINITY, f64::min);
+    let inner =
+        |side: f64, (low, high): (Vector3<f64>, Vector3<f64>)| side * (side * low.dot(&y)).min(side * high.dot(&y));
+    let between = f64::midpoint(inner(1.0, a), inner(-1.0, b));
+    let z = x.cross(&y);
+    let origin = x * (end - BEHIND_TIPS_M) + y * between + z * middle.dot(&z);
+    let rotation =
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, y, z])));
+    let (roll, pitch, yaw) = rotation.euler_angles();
+    let follow = others
+        .iter()
+        .filter_map(|variable| Some((joint_name(*variable)?, follow_factor(limit(driver)?, limit(*variable)?))));
+    Some(HandGuess {
+        link: name(hand)?,
+        xyz: origin.into(),
+        rpy: [roll, pitch, yaw],
+        joint: joint_name(driver)?,
+        tips: [name(tips[0])?, name(tips[1])?],
+        follow: follow.collect(),
+        pad_length_m: (PAD_SHARE * (end - start)).min(PAD_M),
+    })
+}
+
+/// A joint with the mirrored range moves the other way.
+fn follow_factor(
+    driver: darrt_primitives::kinematics::JointLimit,
+    other: darrt_primitives::kinematics::JointLimit,
+) -> f64 {
+    let same = (driver.lower - other.lower).abs() + (driver.upper - other.upper).abs();
+    let mirrored = (driver.lower + other.upper).abs() + (driver.upper + other.lower).abs();
+    if mirrored < same { -1.0 } else { 1.0 }
+}
+
+/// The box around a link's shapes along the axes of the hand.
+fn box_of(
+    bodies: &[Option<Body>],
+    poses: &[Isometry3<f64>],
+    hand_from_world: &Isometry3<f64>,
+    link: usize,
+) -> Option<(Vector3<f64>, Vector3<f64>)> {
+    let body = bodies.get(link)?.as_ref()?;
+    let pose = hand_from_world * poses.get(link)?;
+    let farthest = |axis: Vector3<f64>| {
+        let parts = body.parts.iter().map(|part| {
+            let at = pose * part.body_from_shape;
+            at.translation.vector.dot(&axis) + part.shape.support_extent(&(at.rotation.inverse() * axis))
+        });
+        parts.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    Some((Vector3::from(axes.map(|axis| -farthest(-axis))), Vector3::from(axes.map(farthest))))
+}

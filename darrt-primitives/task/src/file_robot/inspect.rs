@@ -1,0 +1,281 @@
+//! What a person should know of a robot file before planning with it: what was understood, and what is odd.
+
+use std::path::Path;
+
+use darrt_core::random::{Purpose, Stream, stream};
+use darrt_geom::clearance;
+use darrt_primitives::joints::Joints;
+use darrt_primitives::kinematics::KinematicTree;
+use darrt_primitives::laws::{ManipulatorClaims, ReachClaims, check_manipulator, check_reaches};
+use darrt_primitives::manipulator::{Configuration, JointVector as _, LinkGroup, Manipulator as _};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use rand::RngExt as _;
+
+use super::load::Loaded;
+use super::{FileRobot, shipped};
+use crate::problem_file::Limits;
+use crate::robot_file::{RobotFileError, Source};
+use crate::text::counted;
+
+/// Pairs of configurations for which the laws are run.
+const LAW_PAIRS: u64 = 6;
+/// Poses for which the inverse is asked.
+const POSES: usize = 200;
+/// Share of them that should be found.
+const FOUND: f64 = 0.95;
+/// Configurations at which pairs of links are looked at.
+const SELF_SAMPLES: usize = 300;
+/// A pair that touches in so large a share of them stands in each other's shapes.
+const ALWAYS: f64 = 0.95;
+/// Heights at which a hand that points down is tried, metres: from 0 in steps, so many.
+const HEIGHTS: (f64, u32) = (0.1, 21);
+/// Distances from the base at which it is tried, metres.
+const DISTANCES_M: [f64; 6] = [0.3, 0.45, 0.6, 0.75, 0.9, 1.05];
+
+/// How far to the left of straight ahead, metres.
+const SIDES_M: [f64; 3] = [0.0, -0.3, 0.3];
+/// So far before the base a hand works at least, metres.
+const BEFORE_M: f64 = 0.25;
+
+/// What was found.
+#[derive(Debug, Clone)]
+pub struct Inspection {
+    /// The robot's name.
+    pub name: String,
+    /// What was understood, a line each.
+    pub understood: Vec<String>,
+    /// What is odd, a line each, with file and line.
+    pub odd: Vec<String>,
+    /// The names of its postures.
+    pub postures: Vec<String>,
+    /// Its base drives.
+    pub drives: bool,
+    /// At which heights a hand that points down reaches, lowest and highest, and how far ahead, metres.
+    pub reach_down: Option<([f64; 2], f64)>,
+}
+
+/// Reads a robot file, or a robot that comes with the program, as planning would, and tries it.
+///
+/// # Errors
+/// [`RobotFileError`] for what planning would refuse.
+pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
+    let shipped = shipped::all().iter().find(|robot| robot.name == name_or_path);
+    let loaded = match shipped {
+        Some(robot) => Loaded::new(Source::from_text(robot.text, robot.name)?, Some(robot.urdf))?,
+        None => Loaded::new(Source::read(Path::new(name_or_path))?, None)?,
+    };
+    let robot = loaded.robot(Limits::Soft, [0.0; 3])?;
+    let mut odd = Vec::new();
+    postures(&loaded, &robot, &mut odd);
+    self_touching(&loaded, &robot, &mut odd);
+    joints(&loaded, &mut odd);
+    let found = share_found(&robot);
+    if found < FOUND {
+        odd.push(format!(
+            "{}: of {POSES} poses that the tool can reach the numeric inverse finds {:.0} %",
+            loaded.source.name,
+            100.0 * found
+        ));
+    }
+    if let Some(broken) = laws(&robot) {
+        odd.push(format!("{}: a law of robots does not hold: {broken}", loaded.source.name));
+    }
+    let reach_down = reach_down(&robot);
+    if reach_down.is_none() {
+        odd.push(format!(
+            "{}:{}: a hand that points down (tool x axis) reaches nowhere around the base; the primitives push, pick and place with it",
+            loaded.source.name,
+            loaded.source.line("tool")
+        ));
+    }
+    Ok(Inspection {
+        name: loaded.source.file.name.clone(),
+        understood: understood(&loaded, &robot, reach_down),
+        odd,
+        postures: robot.postures.keys().cloned().collect(),
+        drives: !robot.ring.is_fixed(),
+        reach_down,
+    })
+}
+
+fn understood(loaded: &Loaded, robot: &FileRobot, reach_down: Option<([f64; 2], f64)>) -> Vec<String> {
+    let file = &loaded.source.file;
+    let mut lines = vec![format!("base:     {:?}", file.base.kind).to_lowercase()];
+    for ((name, limit), speed) in loaded.amended.arm_joints.iter().zip(&robot.limits).zip(&robot.speeds.joints) {
+        let range = if limit.is_unlimited() {
+            "without limits".to_owned()
+        } else {
+            format!("{:.3} to {:.3}", limit.lower, limit.upper)
+        };
+        lines.push(format!("joint:    {name}, {range}, planned at {speed:.2} per second"));
+    }
+    for (group, what) in [
+        (LinkGroup::Base, "rigid to the base"),
+        (LinkGroup::Arm, "of the arm"),
+        (LinkGroup::Hand, "of the hand"),
+        (LinkGroup::Finger, "of the fingers"),
+    ] {
+        let names: Vec<_> = robot.links().iter().filter(|l| l.group == group).map(|l| &*l.body.name).collect();
+        lines.push(format!("links:    {} {what}: {}", names.len(), names.join(", ")));
+    }
+    let hand = robot.hand();
+    lines.push(format!(
+        "hand:     opens to {:.1} mm, reaches {:.1} mm beyond the tool frame when closed, tips {:.1} mm wide",
+        1e3 * hand.max_gap_m(),
+        1e3 * hand.tip_beyond_tool_m(0.0),
+        2e3 * hand.tip_half_width_m()
+    ));
+    lines.push(format!("pairs:    {} of links are kept apart", robot.self_pairs().len()));
+    if let Some(([low, high], distance)) = reach_down {
+        lines.push(format!(
+            "reach:    pointing down {distance} m ahead, tool from {low:.1} to {high:.1} m above the floor"
+        ));
+    }
+    lines
+}
+
+fn rng(number: u64) -> Stream {
+    stream(0, number, 0, Purpose::Extend)
+}
+
+fn drawn(robot: &FileRobot, rng: &mut Stream) -> Option<Configuration<Joints>> {
+    let values: Vec<f64> = robot
+        .limits
+        .iter()
+        .map(|limit| {
+            if limit.is_unlimited() { rng.random_range(-3.1..3.1) } else { rng.random_range(limit.lower..=limit.upper) }
+        })
+        .collect();
+    Some(Configuration { base: [0.0; 3], arm: Joints::from_values(&values)? })
+}
+
+/// How many poses that the tool can reach are found.
+fn share_found(robot: &FileRobot) -> f64 {
+    let mut rng = rng(1);
+    let found = (0..POSES).filter(|_| {
+        drawn(robot, &mut rng).is_some_and(|q| robot.inverse(&q.base, &robot.world_from_tool(&q), &mut rng).is_some())
+    });
+    found.count() as f64 / POSES as f64
+}
+
+/// The first law that is broken, in words.
+fn laws(robot: &FileRobot) -> Option<String> {
+    let mut rng = rng(2);
+    let max_gap_m = robot.hand().max_gap_m();
+    // A base that is bolted down has one place.
+    let place = |rng: &mut Stream| {
+        if robot.ring.is_fixed() { [0.0; 3] } else { [rng.random_range(-1.0..1.0), 0.3, rng.random_range(-3.0..3.0)] }
+    };
+    let mut configurations = Vec::new();
+    for seed in 0..LAW_PAIRS {
+        let (mut a, mut b) = (drawn(robot, &mut rng)?, drawn(robot, &mut rng)?);
+        (a.base, b.base) = (place(&mut rng), place(&mut rng));
+        let gaps = [0.25 * max_gap_m, max_gap_m];
+        if let Err(broken) = check_manipulator(robot, [&a, &b], gaps, seed, &ManipulatorClaims::default()) {
+            return Some(broken.to_string());
+        }
+        configurations.extend([a, b]);
+    }
+    check_reaches(robot, &configurations, 0, &ReachClaims { inverse: 0.5, base: 0.2 })
+        .err()
+        .map(|broken| broken.to_string())
+}
+
+/// The distances of all pairs of links that may touch or not: `None` where it is not known.
+fn distances(robot: &FileRobot, arm: &Joints, pairs: &[(usize, usize)]) -> Vec<Option<f64>> {
+    let mut poses = vec![Isometry3::identity(); robot.links().len()];
+    robot.link_poses(&Configuration { base: [0.0; 3], arm: *arm }, 0.8 * robot.hand().max_gap_m(), &mut poses);
+    let between = |(a, b): &(usize, usize)| {
+        let ((a, at), (b, bt)) = ((robot.links().get(*a)?, poses.get(*a)?), (robot.links().get(*b)?, poses.get(*b)?));
+        clearance::between(&a.body, at, &b.body, bt).ok().map(|found| found.distance)
+    };
+    pairs.iter().map(between).collect()
+}
+
+/// Postures in which links touch.
+fn postures(loaded: &Loaded, robot: &FileRobot, odd: &mut Vec<String>) {
+    for (name, arm) in &robot.postures {
+        let pairs = robot.self_pairs();
+        let touching = distances(robot, arm, pairs)
+            .into_iter()
+            .zip(pairs)
+            .filter(|(distance, _)| distance.is_some_and(|d| d <= 0.0));
+        let names: Vec<_> = touching.map(|(_, pair)| pair_name(robot, *pair)).collect();
+        if !names.is_empty() {
+            let place = format!("{}:{}", loaded.source.name, loaded.source.line(&format!("postures.{name}")));
+            odd.push(format!(
+                "{place}: in the posture `{name}` {} touch: {}",
+                counted(names.len() as u64, "pair"),
+                names.join(", ")
+            ));
+        }
+    }
+}
+
+fn pair_name(robot: &FileRobot, (a, b): (usize, usize)) -> String {
+    let name = |link: usize| robot.links().get(link).map_or("link", |l| &*l.body.name);
+    format!("{} with {}", name(a), name(b))
+}
+
+/// Pairs that touch nearly always: their shapes reach into each other where they are joined, and nothing could ever be planned.
+fn self_touching(loaded: &Loaded, robot: &FileRobot, odd: &mut Vec<String>) {
+    let mut rng = rng(3);
+    let pairs = robot.self_pairs();
+    let mut touches = vec![0_usize; pairs.len()];
+    for _ in 0..SELF_SAMPLES {
+        let Some(q) = drawn(robot, &mut rng) else { return };
+        for (count, distance) in touches.iter_mut().zip(distances(robot, &q.arm, pairs)) {
+            *count += usize::from(distance.is_some_and(|d| d <= 0.0));
+        }
+    }
+    for (pair, count) in pairs.iter().zip(touches) {
+        let share = count as f64 / SELF_SAMPLES as f64;
+        if share >= ALWAYS {
+            let text = format!(
+                "{}: {} touch in {:.0} % of all configurations; if they are joined, add them to `ignore`",
+                loaded.source.name,
+                pair_name(robot, *pair),
+                100.0 * share
+            );
+            odd.push(text);
+        }
+    }
+}
+
+/// Joints of the arm of which the description says less than planning with times needs.
+fn joints(loaded: &Loaded, odd: &mut Vec<String>) {
+    let Ok(tree) = KinematicTree::new(&loaded.amended.description) else { return };
+    for name in &loaded.amended.arm_joints {
+        let variable = tree.variable_index(name).and_then(|index| tree.variables().get(index));
+        if variable.is_some_and(|v| v.max_velocity <= 0.0) && loaded.source.file.arm.speeds.is_none() {
+            let file = &loaded.source.name;
+            odd.push(format!(
+                "{file}: the description gives `{name}` no speed, it is planned with 1 per second: see `arm.speeds`"
+            ));
+        }
+    }
+}
+
+/// At which heights a hand that points down reaches, at the distance where the range is the largest.
+fn reach_down(robot: &FileRobot) -> Option<([f64; 2], f64)> {
+    let mut rng = rng(4);
+    let mut best: Option<([f64; 2], f64)> = None;
+    let down = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::FRAC_PI_2);
+    // Not above what carries the arm, where no table can be.
+    let (_, front) = robot.base_extent_m();
+    for distance in DISTANCES_M.into_iter().filter(|distance| *distance >= front + BEFORE_M) {
+        let mut reached = (0..HEIGHTS.1).map(|i| f64::from(i) * HEIGHTS.0).filter(|height| {
+            // In front, and a little to either side: an arm may be mounted there.
+            SIDES_M.into_iter().any(|side| {
+                let tool = Isometry3::from_parts(Vector3::new(distance, side, *height).into(), down);
+                robot.may_reach(&[0.0; 3], &tool) && robot.inverse(&[0.0; 3], &tool, &mut rng).is_some()
+            })
+        });
+        let Some(low) = reached.next() else { continue };
+        let high = reached.last().unwrap_or(low);
+        if best.is_none_or(|([l, h], _)| high - low > h - l) {
+            best = Some(([low, high], distance));
+        }
+    }
+    best
+}

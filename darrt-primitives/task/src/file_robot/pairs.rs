@@ -1,0 +1,60 @@
+//! Which links are checked against each other.
+
+use darrt_primitives::kinematics::KinematicTree;
+use darrt_primitives::manipulator::{LinkGroup, RobotLink};
+
+use super::chain::Place;
+use crate::robot_file::error::Fault;
+use crate::robot_file::{RobotFileError, Source};
+
+/// All pairs that can move against each other, but for neighbours, parts of one hand, and those that the file says to ignore;
+/// indices into `links`. `numbers` are the links in the tree.
+pub(super) fn pairs(
+    source: &Source,
+    tree: &KinematicTree,
+    numbers: &[usize],
+    places: &[Place],
+    links: &[RobotLink],
+) -> Result<Vec<(usize, usize)>, RobotFileError> {
+    for (index, pair) in source.file.ignore.iter().enumerate() {
+        if let Some(name) = pair.iter().find(|name| tree.link_index(name).is_none()) {
+            let known = tree.link_names().iter().map(|name| &**name);
+            return Err(source.located(Fault::unknown(format!("ignore[{index}]"), "link", name, known)));
+        }
+    }
+    // A link's shapes may be those of a pad beside it.
+    let of_link = |name: &str| -> Vec<usize> {
+        let pad = format!("{name}_pad");
+        let named = links.iter().enumerate().filter(|(_, l)| *l.body.name == *name || *l.body.name == *pad);
+        named.map(|(index, _)| index).collect()
+    };
+    let mut ignored = Vec::new();
+    for [a, b] in &source.file.ignore {
+        let others = of_link(b);
+        ignored.extend(of_link(a).into_iter().flat_map(|a| others.iter().map(move |b| (a.min(*b), a.max(*b)))));
+    }
+    let is_hand = |link: usize| links.get(link).is_some_and(|l| matches!(l.group, LinkGroup::Hand | LinkGroup::Finger));
+    let is_rigid = |a: usize, b: usize| match (places.get(a), places.get(b)) {
+        (Some(a), Some(b)) => a.anchor == b.anchor && a.steps.is_empty() && b.steps.is_empty(),
+        _ => false,
+    };
+    let all = (0..links.len()).flat_map(|a| (a + 1..links.len()).map(move |b| (a, b)));
+    let kept = all.filter(|&(a, b)| {
+        let neighbours = || match (numbers.get(a), numbers.get(b)) {
+            (Some(a), Some(b)) => above(tree, numbers, *a) == Some(*b) || above(tree, numbers, *b) == Some(*a),
+            _ => false,
+        };
+        let is_of_hand = is_hand(a) && is_hand(b);
+        !(is_rigid(a, b) || is_of_hand || neighbours() || ignored.contains(&(a, b)))
+    });
+    Ok(kept.collect())
+}
+
+/// The nearest link above that has a shape.
+fn above(tree: &KinematicTree, numbers: &[usize], link: usize) -> Option<usize> {
+    let mut at = tree.parent(link)?;
+    while !numbers.contains(&at) {
+        at = tree.parent(at)?;
+    }
+    Some(at)
+}
