@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Standard deviations of the errors of one execution. Missing keys are zero.
 ///
-/// [`NoiseModel::REAL`] is the built-in one. Errors are normal, cut off at three standard deviations, so that one in four
+/// `noise/real.toml` is the built-in one. Errors are normal, cut off at three standard deviations, so that one in four
 /// hundred draws is drawn again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]

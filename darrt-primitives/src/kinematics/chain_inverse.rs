@@ -1,6 +1,6 @@
 //! Inverse kinematics of any serial chain, for robots without a closed form.
 //!
-//! A pose is answered in attempts. Each starts at that configuration of a window, drawn at random, of a [table](seeds) whose pose is
+//! A pose is answered in attempts. Each starts at that configuration of a window, drawn at random, of a table (`seeds`) whose pose is
 //! nearest to the one asked for, and descends from there by damped least squares: `dq = J^T (J J^T + lambda I)^-1 e` over the
 //! joints that no limit holds, `e` being the pose error and `lambda` growing with it. An attempt that comes no nearer is given
 //! up and the next one starts from the window after it. So the answers of a redundant chain differ from draw to draw, and the same
