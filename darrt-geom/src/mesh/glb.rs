@@ -9,6 +9,9 @@ use gltf::mesh::Mode;
 use gltf::{Accessor, Gltf, Node, Primitive, Semantic};
 use nalgebra::{Matrix4, Point3};
 
+/// Of the file's header and of that of its first chunk.
+const HEADER_BYTES: usize = 20;
+
 use super::MAXIMUM_TRIANGLES;
 use super::read::{Soup, push};
 use crate::check;
@@ -23,6 +26,7 @@ pub(super) fn glb(shown: &str, bytes: &[u8]) -> Result<Soup, GeomError> {
     if !bytes.starts_with(b"glTF") {
         return Err(reader.wrong("it does not begin with `glTF`"));
     }
+    check_header(bytes).map_err(|why| reader.wrong(&why))?;
     let file = Gltf::from_slice(bytes).map_err(|error| reader.wrong(&error.to_string()))?;
     if let Some(extension) = file.extensions_required().next() {
         let extension: String = extension.chars().take(80).collect();
@@ -161,4 +165,19 @@ impl<'a> Reader<'a> {
     fn wrong(&self, reason: &str) -> GeomError {
         GeomError::Malformed { path: self.shown.to_owned(), format: "GLB", reason: reason.to_owned() }
     }
+}
+
+/// Do the lengths in the header agree with the file? The parser subtracts them without asking.
+fn check_header(bytes: &[u8]) -> Result<(), String> {
+    let word = |at: usize| bytes.get(at..at + 4)?.try_into().ok().map(u32::from_le_bytes).map(|word| word as usize);
+    let (Some(length), Some(chunk)) = (word(8), word(12)) else {
+        return Err(format!("{} bytes are no header and chunk", bytes.len()));
+    };
+    if length != bytes.len() {
+        return Err(format!("its header says {length} bytes, there are {}", bytes.len()));
+    }
+    if chunk > length.saturating_sub(HEADER_BYTES) {
+        return Err(format!("its first chunk says {chunk} bytes, the file has {length}"));
+    }
+    Ok(())
 }
