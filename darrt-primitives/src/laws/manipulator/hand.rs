@@ -4,7 +4,7 @@ use darrt_core::laws::{Broken, ensure};
 use nalgebra::{Isometry3, Point3};
 
 use super::travel::directions;
-use super::{ARM_MOVES, GAP_METRES, HAND_FOLLOWS, TIPS, Trial, WEIGHTS, same_pose};
+use super::{ARM_MOVES, GAP_METRES, TIPS, Trial, WEIGHTS};
 use crate::laws::tabletop::corners;
 use crate::manipulator::{Configuration, LinkGroup, Manipulator};
 
@@ -23,7 +23,6 @@ const SMALL: f64 = 1e-3;
 
 impl<M: Manipulator> Trial<'_, M> {
     pub(super) fn hand(&self) -> Result<(), Broken> {
-        self.hand_follows()?;
         self.arm_moves()?;
         self.gap_is_in_metres()?;
         self.tips()?;
@@ -33,20 +32,6 @@ impl<M: Manipulator> Trial<'_, M> {
     fn links_of(&self, group: LinkGroup) -> impl Iterator<Item = usize> + '_ {
         let links = self.robot.links().iter().enumerate();
         links.filter(move |(_, link)| link.group == group).map(|(number, _)| number)
-    }
-
-    /// From the arm of one configuration to that of the other.
-    fn hand_follows(&self) -> Result<(), Broken> {
-        let there = Configuration { arm: self.b.arm, ..*self.a };
-        let [before, after] = [self.a, &there].map(|q| self.poses(q, self.gaps_m[0]));
-        let [tool_before, tool_after] = [self.a, &there].map(|q| self.robot.world_from_tool(q));
-        for link in self.links_of(LinkGroup::Hand) {
-            let (Some(before), Some(after)) = (before.get(link), after.get(link)) else { continue };
-            let expected = tool_after * (tool_before.inverse() * before);
-            same_pose(HAND_FOLLOWS, after, &expected, self.claims.pose)
-                .map_err(|broken| broken.of(self.link_name(link)))?;
-        }
-        Ok(())
     }
 
     /// Every link of the arm stands elsewhere when every joint does.

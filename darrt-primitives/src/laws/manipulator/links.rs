@@ -3,7 +3,9 @@
 use darrt_core::laws::{Broken, ensure, equal};
 use nalgebra::Isometry3;
 
-use super::{BASE_FRAME, BASE_LINKS, FINGERS_FOLLOW, GAP, PURE, RIGID, Trial, same_pose, world_from_base};
+use super::{
+    BASE_FRAME, BASE_LINKS, FINGERS_FOLLOW, GAP, HAND_FOLLOWS, PURE, RIGID, Trial, same_pose, world_from_base,
+};
 use crate::manipulator::{Configuration, LinkGroup, Manipulator};
 
 impl<M: Manipulator> Trial<'_, M> {
@@ -52,10 +54,12 @@ impl<M: Manipulator> Trial<'_, M> {
         let (before, after) = (self.poses(self.a, gap_m), self.poses(&there, gap_m));
         let [tool_before, tool_after] = [self.a, &there].map(|q| self.robot.world_from_tool(q));
         for (link, (before, after)) in before.iter().zip(&after).enumerate() {
+            let rigid_to_tool = || tool_after * (tool_before.inverse() * before);
             let (law, expected) = match self.group(link) {
                 Some(LinkGroup::Base) => (BASE_LINKS, *before),
-                Some(LinkGroup::Finger) => (FINGERS_FOLLOW, tool_after * (tool_before.inverse() * before)),
-                _ => continue,
+                Some(LinkGroup::Hand) => (HAND_FOLLOWS, rigid_to_tool()),
+                Some(LinkGroup::Finger) => (FINGERS_FOLLOW, rigid_to_tool()),
+                Some(LinkGroup::Arm) | None => continue,
             };
             same_pose(law, after, &expected, self.claims.pose).map_err(|broken| broken.of(self.link_name(link)))?;
         }
