@@ -3,6 +3,7 @@
 //! The numbers are the dimensions of the PR2; [`Pr2Model`](crate::model::Pr2Model) refuses a description with others,
 //! and the tests hold this file against the general tree and against reference poses.
 
+pub use darrt_primitives::manipulator::world_from_base;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use crate::arm::{ArmConfiguration, Side};
@@ -192,12 +193,6 @@ impl ArmChain {
         show(Frame::WristRoll, &at);
         at
     }
-}
-
-/// The pose of the base on the floor: x, y (m), yaw (rad).
-pub fn world_from_base(base: &[f64; 3]) -> Isometry3<f64> {
-    let [x, y, yaw] = *base;
-    Isometry3::from_parts(Translation3::new(x, y, 0.0), UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw))
 }
 
 /// A pose that turns about its own axes and moves along its own x.

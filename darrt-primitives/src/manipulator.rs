@@ -5,10 +5,11 @@
 use std::fmt::Debug;
 
 use darrt_geom::body::Body;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Vector3};
 use rand::Rng;
 
 use crate::kinematics::JointLimit;
+use crate::object_space::upright;
 
 /// The values of an arm's joints: an array of `f64` for an arm whose number of joints is known when the program is compiled,
 /// [`Joints`](crate::joints::Joints) for one that comes as a file.
@@ -40,6 +41,11 @@ pub struct Configuration<J> {
     pub base: [f64; 3],
     /// Joint values in radians (turning) or metres (sliding).
     pub arm: J,
+}
+
+/// The frame of the base, which lies on the floor, in the world, for a base at `[x, y, yaw]` (m, m, rad).
+pub fn world_from_base(&[x, y, yaw]: &[f64; 3]) -> Isometry3<f64> {
+    upright(Vector3::new(x, y, 0.0), yaw)
 }
 
 /// What carries a link along.

@@ -6,12 +6,12 @@
 
 use darrt_core::domain::Domain;
 use darrt_core::space::Se2;
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector2, Vector3};
+use nalgebra::{Isometry3, Vector2, Vector3};
 
 use super::floor_plan::{FloorPlan, Obstacle};
 use super::outline::{Contact, Frame, Outline};
 use super::section::Placed;
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, Manipulator, world_from_base};
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// How many outlines of a layer are asked whether they hold another one.
@@ -277,10 +277,4 @@ impl Layer {
         let inner_m = outlines.iter().map(|outline| -outline.beyond_m(&axis)).fold(0.0, f64::max);
         Self { z_m, outlines, reach_m, inner_m }
     }
-}
-
-/// The frame of the base on the floor.
-fn world_from_base([x, y, yaw]: &[f64; 3]) -> Isometry3<f64> {
-    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), *yaw);
-    Isometry3::from_parts(Translation3::new(*x, *y, 0.0), turn)
 }

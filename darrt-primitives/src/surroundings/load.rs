@@ -1,10 +1,10 @@
 //! The arm with what it holds, rigid on the base: what a drive carries through the room.
 
 use darrt_geom::body_set::{BodyIndex, BodySet};
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nalgebra::Isometry3;
 
 use super::{Strict, Surroundings};
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, Manipulator, world_from_base};
 use crate::mode::Contacts;
 use crate::tabletop::TabletopState;
 
@@ -43,14 +43,11 @@ impl Surroundings {
     ) -> Option<usize> {
         self.with_worker(|worker| {
             self.set_rules(like, &Contacts::default(), Strict::with(care), worker);
-            for (id, pose) in self.objects.iter().zip(&like.objects) {
-                self.model.set_pose(&mut worker.scratch, *id, pose);
-            }
+            self.pose_objects(like, worker);
             let moved: BodySet = load.base_from_body.iter().map(|(id, _)| *id).collect();
             let against = BodySet::ALL.difference(&self.all_links).difference(&moved);
-            bases.into_iter().position(|[x, y, yaw]| {
-                let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), *yaw);
-                let world_from_base = Isometry3::from_parts(Vector3::new(*x, *y, 0.0).into(), turn);
+            bases.into_iter().position(|base| {
+                let world_from_base = world_from_base(base);
                 for (id, base_from_body) in &load.base_from_body {
                     self.model.set_pose(&mut worker.scratch, *id, &(world_from_base * base_from_body));
                 }

@@ -6,10 +6,10 @@ use darrt_core::state::ObjectId;
 use darrt_core::validity::Blame;
 use darrt_geom::allowed::AllowedContacts;
 use darrt_geom::body_set::{BodyIndex, BodySet};
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3};
 
 use super::{Strict, Surroundings, Worker};
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, Manipulator, world_from_base};
 use crate::mode::Contacts;
 use crate::push::slide::Slide;
 use crate::tabletop::TabletopState;
@@ -57,9 +57,7 @@ impl Surroundings {
             let of_base = self.links.iter().copied().zip(poses).filter(|(id, _)| self.base_links.contains(*id));
             of_base.collect()
         });
-        let [x, y, yaw] = q.base;
-        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
-        let world_from_base = Isometry3::from_parts(Vector3::new(x, y, 0.0).into(), turn);
+        let world_from_base = world_from_base(&q.base);
         self.with_worker(|worker| {
             worker.allowed = AllowedContacts::none();
             self.keep_alone(Strict::with(0), &mut worker.keep);
@@ -175,7 +173,7 @@ impl Surroundings {
     }
 
     /// Puts the objects where they are in `state`.
-    fn pose_objects<M: Manipulator>(&self, state: &TabletopState<M>, worker: &mut Worker) {
+    pub(super) fn pose_objects<M: Manipulator>(&self, state: &TabletopState<M>, worker: &mut Worker) {
         for (id, pose) in self.objects.iter().zip(&state.objects) {
             self.model.set_pose(&mut worker.scratch, *id, pose);
         }

@@ -24,7 +24,7 @@ use arrayvec::ArrayVec;
 use darrt_primitives::arm_space::difference;
 use darrt_primitives::joints::{Joints, MAX_JOINTS};
 use darrt_primitives::kinematics::JointLimit;
-use darrt_primitives::manipulator::{Configuration, Hand, LinkGroup, Manipulator, RobotLink};
+use darrt_primitives::manipulator::{Configuration, Hand, LinkGroup, Manipulator, RobotLink, world_from_base};
 use nalgebra::Isometry3;
 use rand::Rng;
 
@@ -143,11 +143,11 @@ impl Manipulator for FileRobot {
     }
 
     fn inverse(&self, base: &[f64; 3], world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> Option<Joints> {
-        self.inverse.any(&(chain::world_from_base(base).inverse() * world_from_tool), rng)
+        self.inverse.any(&(world_from_base(base).inverse() * world_from_tool), rng)
     }
 
     fn inverse_near(&self, base: &[f64; 3], world_from_tool: &Isometry3<f64>, near: &Joints) -> Option<Joints> {
-        self.inverse.near(&(chain::world_from_base(base).inverse() * world_from_tool), near, LINE_JOINT_STEP)
+        self.inverse.near(&(world_from_base(base).inverse() * world_from_tool), near, LINE_JOINT_STEP)
     }
 
     fn base_for(&self, world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] {

@@ -1,7 +1,8 @@
 //! From the waypoints of a plan to its clock: phases, knots, lengths, corners, paces.
 
 use darrt_primitives::contract::{Contract, HandUse, HandWay};
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use darrt_primitives::manipulator::world_from_base;
+use nalgebra::{Isometry3, Vector3};
 
 use super::ClockError;
 use super::limits::{Bounds, MotionLimits, carrying_acceleration, coasting_speed, quasi_static_acceleration};
@@ -339,7 +340,7 @@ impl<'a> Pace<'a> {
         // OPTIMIZATION: only the links between root and tool; the lengths are the tree's own.
         let written = self.body.tree.forward_only(joints, &self.body.to_tool, &mut poses);
         debug_assert!(written.is_ok(), "{written:?}");
-        let tool = world_from_base(point) * poses.get(self.body.tool).copied().unwrap_or_default();
+        let tool = world_from_root(point) * poses.get(self.body.tool).copied().unwrap_or_default();
         self.held(tool).translation.vector
     }
 
@@ -353,7 +354,7 @@ impl<'a> Pace<'a> {
         let mut poses = vec![Isometry3::identity(); self.body.tree.link_count()];
         let joints = point.get(BASE..).unwrap_or_default();
         // The lengths are the tree's own.
-        let written = self.body.tree.forward(joints, &world_from_base(point), &mut poses);
+        let written = self.body.tree.forward(joints, &world_from_root(point), &mut poses);
         debug_assert!(written.is_ok(), "{written:?}");
         let tool = poses.get(self.body.tool).copied().unwrap_or_default();
         let hand = self.held(tool);
@@ -362,10 +363,8 @@ impl<'a> Pace<'a> {
 }
 
 /// Where the robot's root is.
-pub(super) fn world_from_base(point: &[f64]) -> Isometry3<f64> {
-    let [x, y, yaw] = [0, 1, 2].map(|i| point.get(i).copied().unwrap_or(0.0));
-    let rotation = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
-    Isometry3::from_parts(Translation3::new(x, y, 0.0), rotation)
+fn world_from_root(point: &[f64]) -> Isometry3<f64> {
+    world_from_base(&[0, 1, 2].map(|i| point.get(i).copied().unwrap_or(0.0)))
 }
 
 fn is_same(points: &[Vec<f64>], a: usize, b: usize) -> bool {

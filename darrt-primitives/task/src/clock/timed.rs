@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use darrt_primitives::contract::HandUse;
 use darrt_primitives::kinematics::KinematicTree;
+use darrt_primitives::manipulator::world_from_base;
 use nalgebra::Isometry3;
 
-use super::build::world_from_base;
 use super::profile::{self, Progress, progress};
 use super::track::{BASE, Body, Track};
 use super::way::Way;

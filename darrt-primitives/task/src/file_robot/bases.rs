@@ -5,10 +5,11 @@ use std::sync::{Arc, OnceLock};
 
 use darrt_core::space::so2::wrap;
 use darrt_primitives::kinematics::JointLimit;
+use darrt_primitives::manipulator::world_from_base;
 use nalgebra::{Isometry3, Point3};
 use rand::{Rng, RngExt};
 
-use super::chain::{ArmChain, world_from_base};
+use super::chain::ArmChain;
 use super::reach::Reach;
 
 /// Parts of the arm's length between shoulder and wrist when a base is drawn: least and most.

@@ -4,6 +4,7 @@ use arrayvec::ArrayVec;
 use darrt_primitives::joints::MAX_JOINTS;
 use darrt_primitives::kinematics::KinematicTree;
 use darrt_primitives::kinematics::tree::LinkMotion;
+use darrt_primitives::manipulator::world_from_base;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// What the value of a joint comes from.
@@ -109,11 +110,6 @@ impl ArmChain {
         }
         frames
     }
-}
-
-/// The frame of the base in the world.
-pub(super) fn world_from_base(&[x, y, yaw]: &[f64; 3]) -> Isometry3<f64> {
-    Isometry3::from_parts(Translation3::new(x, y, 0.0), UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw))
 }
 
 /// A tree with the meaning of its variables.

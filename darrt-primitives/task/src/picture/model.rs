@@ -6,8 +6,8 @@ use darrt_geom::Body;
 use darrt_primitives::kinematics::limit::wrap_to_pi;
 use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
 use darrt_primitives::kinematics::{link_bodies, mesh_folders};
-use darrt_primitives::object_space::upright;
-use nalgebra::{Isometry3, Vector3};
+use darrt_primitives::manipulator::world_from_base;
+use nalgebra::Isometry3;
 
 use crate::plan_file::JointTable;
 use crate::robot::{RobotError, RobotFacts};
@@ -117,12 +117,6 @@ impl Model {
         };
         self.arm.iter().filter_map(turn).sum()
     }
-}
-
-/// Where a base at x, y and yaw has the robot's root.
-pub(crate) fn world_from_base(base: &[f64; 3]) -> Isometry3<f64> {
-    let [x, y, yaw] = *base;
-    upright(Vector3::new(x, y, 0.0), yaw)
 }
 
 /// The variables that move a link, from the link upwards.

@@ -1,8 +1,8 @@
 //! How far base, hand and object go in one step.
 
+use darrt_primitives::manipulator::world_from_base;
 use nalgebra::Isometry3;
 
-use super::model::world_from_base;
 use super::story::{Snapshot, Story, StoryStep};
 
 /// Lengths of ways in metres and sums of turns in radians, over the states of one step.

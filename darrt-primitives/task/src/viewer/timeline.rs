@@ -1,6 +1,7 @@
 //! What moves, from waypoint to waypoint.
 
 use darrt_primitives::kinematics::limit::wrap_to_pi;
+use darrt_primitives::manipulator::world_from_base;
 use nalgebra::Isometry3;
 
 use super::ViewerError;
@@ -8,7 +9,6 @@ use super::data::{self, HoldData, JointTrack, ObjectTrack, StartData, StepData, 
 use super::scene::RobotModel;
 use crate::clock::check::check;
 use crate::clock::waypoint_times_s;
-use crate::picture::model::world_from_base;
 use crate::picture::{self, palette};
 use crate::plan_file::timing::StepTiming;
 use crate::plan_file::{ContactReason, PlanFile, Step, Waypoint};

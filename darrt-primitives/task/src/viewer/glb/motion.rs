@@ -1,11 +1,11 @@
 //! What nodes do over time.
 
+use darrt_primitives::manipulator::world_from_base;
 use std::collections::BTreeMap;
 
 use darrt_primitives::kinematics::limit::wrap_to_pi;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
-use crate::picture::model::world_from_base;
 use crate::viewer::data::{JointKindData, LinkData, StepData, ViewerData, pose_of};
 
 /// A held object is given this often between two waypoints.
