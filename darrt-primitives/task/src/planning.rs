@@ -205,6 +205,17 @@ impl<M: TaskRobot> Verifier<Tabletop<M>> for FileVerifier {
     }
 }
 
+impl PlanResult {
+    /// The same with a clock for the whole plan, if there is one that the verifier accepts.
+    pub(crate) fn clocked(mut self, facts: &RobotFacts) -> Self {
+        if let (Some(plan), Some(proof)) = (&mut self.plan, &mut self.proof) {
+            self.no_clock = give_clock(plan, facts, &VerifyOptions::default(), &Cancel::new()).err();
+            proof.duration_s = plan.timing.as_ref().map(|timing| timing.duration_s);
+        }
+        self
+    }
+}
+
 /// A problem ready to be solved.
 #[derive(Debug)]
 pub struct Prepared<M: TaskRobot> {
@@ -293,6 +304,20 @@ pub fn plan<M: TaskRobot>(
     cancel: &Cancel,
     observer: &mut dyn Observer,
 ) -> Result<PlanResult, PlanningError> {
+    let (result, facts) = plan_without_clock(registry, request, cancel, observer)?;
+    Ok(result.clocked(&facts))
+}
+
+/// [`plan`] for those who do not need to know when the robot is where; also the facts about the robot.
+///
+/// # Errors
+/// As [`plan`].
+pub(crate) fn plan_without_clock<M: TaskRobot>(
+    registry: &Registry<M>,
+    request: &PlanRequest,
+    cancel: &Cancel,
+    observer: &mut dyn Observer,
+) -> Result<(PlanResult, Arc<RobotFacts>), PlanningError> {
     let watch = Profile::start();
     let prepared = prepare_watched(registry, request, cancel, &watch)?;
     let cost = &*registry.cost(&request.cost)?;
@@ -340,7 +365,8 @@ pub fn plan<M: TaskRobot>(
     let is_solved = outcome.solution.is_some();
     let plans = if request.improve.is_some() { observer.plans } else { u64::from(is_solved) };
     let times = watch.times(begun, outcome.elapsed, is_solved);
-    Ok(PlanResult { plans, times, ..result(&prepared, request, cost, outcome)? })
+    let result = PlanResult { plans, times, ..result(&prepared, request, cost, outcome)? };
+    Ok((result, prepared.facts))
 }
 
 /// The places that are proposed, as targets: those of objects that there are, and that may be there.
@@ -386,21 +412,15 @@ fn result<M: TaskRobot>(
         let judged = verified.evidence?.downcast().ok()?;
         Some((plan, Arc::<Judged>::unwrap_or_clone(judged)))
     });
-    let (mut plan, mut proof) = judged
+    let (plan, proof) = judged
         .map(|(plan, Judged { written, proof })| {
             (prepared.exporter.with_steps(m, &plan, written, request.seed, facts), proof)
         })
         .unzip();
-    let facts = M::facts(&request.problem.robot)?;
-    let no_clock =
-        plan.as_mut().and_then(|plan| give_clock(plan, &facts, &VerifyOptions::default(), &Cancel::new()).err());
-    if let (Some(plan), Some(proof)) = (&plan, &mut proof) {
-        proof.duration_s = plan.timing.as_ref().map(|timing| timing.duration_s);
-    }
     Ok(PlanResult {
         plan,
         proof,
-        no_clock,
+        no_clock: None,
         execution_s,
         found,
         plans: 0,

@@ -26,7 +26,11 @@ pub trait Program: Send + Sync {
     ///
     /// # Errors
     /// As [`Collection::open`] and [`Registry::check`].
-    fn open(&self, name_or_path: &str) -> Result<ProblemFile, ProblemFileError>;
+    fn open(&self, name_or_path: &str) -> Result<ProblemFile, ProblemFileError> {
+        let problem = self.problems().open(name_or_path)?;
+        self.check(&problem, name_or_path)?;
+        Ok(problem)
+    }
 
     /// Checks what only a program can know of a problem, which errors call `source_name`.
     ///
@@ -115,12 +119,6 @@ impl<M: TaskRobot> Program for Robots<M> {
         self.own.problems()
     }
 
-    fn open(&self, name_or_path: &str) -> Result<ProblemFile, ProblemFileError> {
-        let problem = self.own.problems().open(name_or_path)?;
-        self.check(&problem, name_or_path)?;
-        Ok(problem)
-    }
-
     fn check(&self, problem: &ProblemFile, source_name: &str) -> Result<(), ProblemFileError> {
         self.of(problem).check(problem, source_name)
     }
@@ -172,12 +170,6 @@ impl<M: TaskRobot> Program for Robots<M> {
 impl<M: TaskRobot> Program for Registry<M> {
     fn problems(&self) -> &Collection {
         Self::problems(self)
-    }
-
-    fn open(&self, name_or_path: &str) -> Result<ProblemFile, ProblemFileError> {
-        let problem = Self::problems(self).open(name_or_path)?;
-        self.check(&problem, name_or_path)?;
-        Ok(problem)
     }
 
     fn check(&self, problem: &ProblemFile, source_name: &str) -> Result<(), ProblemFileError> {

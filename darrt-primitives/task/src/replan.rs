@@ -13,10 +13,9 @@ use darrt_core::plan::Plan;
 use darrt_primitives::contract::HandUse;
 use nalgebra::{Isometry3, Point2};
 
-use crate::clock::{NoClock, give_clock};
 use crate::export::Exporter;
 use crate::plan_file::{Partial, PlanFile, PlannerFacts, Pose, Step, Waypoint};
-use crate::planning::{PlanRequest, PlanResult, plan};
+use crate::planning::{PlanRequest, PlanResult, plan_without_clock};
 use crate::planning_error::PlanningError;
 use crate::problem_file::ProblemFile;
 use crate::registry::Registry;
@@ -56,7 +55,7 @@ pub struct Replanned {
 /// Plans from an old plan.
 ///
 /// # Errors
-/// As [`plan`]; [`PlanningError::CannotKeep`] if the steps that shall be kept cannot be.
+/// As [`plan`](crate::planning::plan); [`PlanningError::CannotKeep`] if the steps that shall be kept cannot be.
 pub fn replan<M: TaskRobot>(
     registry: &Registry<M>,
     request: &ReplanRequest,
@@ -81,7 +80,7 @@ pub fn replan<M: TaskRobot>(
     };
     let good = old.allowed(good);
     if let (Ok(proof), true) = (judged, request.keep.is_none_or(|keep| keep == of) && good == of) {
-        let result = as_it_is(registry, &old.file, proof, &facts);
+        let result = as_it_is(registry, &old.file, proof).clocked(&facts);
         return Ok(Replanned { result, kept: of, of, refused: None });
     }
     // What is whole and yet refused fails at the goal.
@@ -206,28 +205,24 @@ impl Old<'_> {
         };
         let hints = self.hints(kept);
         let rest = PlanRequest { problem, hints, ..request.plan.clone() };
-        let mut result = plan(registry, &rest, self.cancel, observer)?;
+        let (mut result, _) = plan_without_clock(registry, &rest, self.cancel, observer)?;
         if kept == 0 {
-            return Ok(result);
+            return Ok(result.clocked(self.facts));
         }
         result.found = None;
         result.execution_s = None;
         let joined = |file: &PlanFile| {
-            // The clock of the rest is not that of the whole.
-            let whole = PlanFile { timing: None, ..self.joined(kept, file) };
+            let whole = self.joined(kept, file);
             verify_unless(&whole, self.facts, &VerifyOptions::default(), self.cancel).map(|proof| (whole, proof))
         };
         if let Some(file) = result.plan.take() {
             match joined(&file) {
-                Ok((whole, proof)) => {
-                    let (whole, proof, no_clock) = clocked(whole, proof, self.facts);
-                    (result.plan, result.proof, result.no_clock) = (Some(whole), Some(proof), no_clock);
-                }
+                Ok((whole, proof)) => (result.plan, result.proof) = (Some(whole), Some(proof)),
                 Err(refusal) => (result.proof, result.last_refusal) = (None, Some(refusal.to_string())),
             }
         }
         result.partial = result.partial.take().and_then(|(file, _)| joined(&file).ok());
-        Ok(result)
+        Ok(result.clocked(self.facts))
     }
 
     /// The problem that is left behind so many steps.
@@ -348,20 +343,12 @@ fn adapted(old: &PlanFile, blank: &PlanFile) -> PlanFile {
     PlanFile { steps, contracts: old.contracts.clone(), planner: old.planner.clone(), seed: old.seed, ..blank.clone() }
 }
 
-/// An accepted plan with a clock of its own, and why it has none if it has none.
-fn clocked(mut plan: PlanFile, proof: Proof, facts: &RobotFacts) -> (PlanFile, Proof, Option<NoClock>) {
-    let no_clock = give_clock(&mut plan, facts, &VerifyOptions::default(), &Cancel::new()).err();
-    let duration_s = plan.timing.as_ref().map(|timing| timing.duration_s);
-    (plan, Proof { duration_s, ..proof }, no_clock)
-}
-
 /// A plan that needs nothing new.
-fn as_it_is<M: TaskRobot>(registry: &Registry<M>, file: &PlanFile, proof: Proof, facts: &RobotFacts) -> PlanResult {
+fn as_it_is<M: TaskRobot>(registry: &Registry<M>, file: &PlanFile, proof: Proof) -> PlanResult {
     let names = registry.allowed(&file.problem).map(|(id, _)| id.name()).collect();
-    let (plan, proof, no_clock) = clocked(PlanFile { timing: None, ..file.clone() }, proof, facts);
     PlanResult {
-        plan: Some(plan),
-        no_clock,
+        plan: Some(file.clone()),
+        no_clock: None,
         proof: Some(proof),
         execution_s: None,
         found: None,

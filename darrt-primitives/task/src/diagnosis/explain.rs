@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::cause::Cause;
 use super::relax::Relaxation;
 use super::{causes, looked_for};
-use crate::planning::{PlanRequest, plan};
+use crate::planning::{PlanRequest, plan_without_clock};
 use crate::planning_error::PlanningError;
 use crate::problem_file::ProblemFile;
 use crate::registry::Registry;
@@ -178,7 +178,7 @@ impl<M: TaskRobot> Solver<'_, M> {
         request.as_found = true;
         self.tried.fetch_add(1, SeqCst);
         let begun = Instant::now();
-        let result = plan(self.registry, &request, self.cancel, &mut Silent).ok()?;
+        let (result, _) = plan_without_clock(self.registry, &request, self.cancel, &mut Silent).ok()?;
         let steps = result.plan?.steps.len() as u64;
         Some(Solved { changes, iterations: result.iterations, steps, seconds: begun.elapsed().as_secs_f64() })
     }
