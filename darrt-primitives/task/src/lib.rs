@@ -45,6 +45,7 @@ mod supports;
 mod testing;
 pub mod text;
 pub mod text_file;
+pub mod toml_error;
 pub mod trajectory;
 pub mod verify;
 pub mod viewer;

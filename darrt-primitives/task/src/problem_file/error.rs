@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use super::suggest::{hint, listed, shown};
 use crate::text_file::TextFileError;
+use crate::toml_error::TomlError;
 
 /// A problem file that cannot be used, with the place and the reason.
 #[derive(Debug, Error)]
@@ -22,22 +23,8 @@ pub enum ProblemFileError {
         what: String,
     },
     /// The text is not TOML, or a key or value is not part of the format.
-    #[error("{file}:{line}:{column}: {}{message}{}", at(key.as_deref()), hint(nearest.as_deref()))]
-    Syntax {
-        /// The file.
-        file: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column in characters, from 1.
-        column: usize,
-        /// Path of the key, such as `robot.base[1]`; indices count from 0. `None` when the text is not TOML, or the whole
-        /// file lacks something.
-        key: Option<String>,
-        /// What is wrong, with the offending key or value.
-        message: String,
-        /// The nearest valid key or value.
-        nearest: Option<String>,
-    },
+    #[error(transparent)]
+    Syntax(#[from] TomlError),
     /// A key holds a value that breaks a rule of the format.
     #[error("{file}: `{key}` {flaw}")]
     Invalid {
@@ -207,10 +194,6 @@ pub enum Flaw {
     /// Keys contradict each other, one is missing, or a value makes no sense with another.
     #[error("{0}")]
     Inconsistent(String),
-}
-
-fn at(key: Option<&str>) -> String {
-    key.map_or_else(String::new, |key| format!("at `{key}`: "))
 }
 
 /// Metres, to a tenth of a millimetre but never to 0.

@@ -7,12 +7,12 @@ use darrt_primitives::kinematics::limit::wrap_to_pi;
 
 use super::error::{Flaw, ProblemFileError};
 use super::nesting::check_nesting;
-use super::suggest::{nearest_expected, shown};
-use super::toml_path::path_at;
+use super::suggest::shown;
 use super::{ProblemFile, VERSION, arrays};
 use crate::file_kind::FileKind;
 use crate::text_file;
 pub use crate::text_file::MAX_NESTING;
+use crate::toml_error::TomlError;
 
 /// Largest accepted problem file in bytes (4 MiB).
 pub const MAX_BYTES: u64 = 4 * 1024 * 1024;
@@ -87,18 +87,7 @@ fn parse_toml(text: &str, source_name: &str) -> Result<ProblemFile, ProblemFileE
             flaw: Box::new(flaw),
         });
     }
-    let mut problem: ProblemFile = toml::from_str(text).map_err(|error| {
-        let place = error.span().unwrap_or(0..text.len());
-        let (line, column) = text_file::line_and_column(text, place.start);
-        ProblemFileError::Syntax {
-            file: source_name.to_owned(),
-            line,
-            column,
-            key: path_at(text, &place).map(|path| shown(&path)),
-            nearest: nearest_expected(error.message()).map(|name| shown(&name)),
-            message: text_file::one_line(error.message()),
-        }
-    })?;
+    let mut problem: ProblemFile = toml::from_str(text).map_err(|error| TomlError::of(&error, text, source_name))?;
     if let Ok(raw) = raw {
         arrays::check_lengths(&raw, &problem).map_err(|(key, flaw)| ProblemFileError::Invalid {
             file: source_name.to_owned(),

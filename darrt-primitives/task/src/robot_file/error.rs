@@ -4,6 +4,7 @@ use darrt_primitives::kinematics::UrdfError;
 
 use crate::problem_file::suggest::{hint, nearest, shown};
 use crate::text_file::TextFileError;
+use crate::toml_error::TomlError;
 
 /// A robot file that cannot be used, with the place and the reason.
 #[derive(Debug, thiserror::Error)]
@@ -13,21 +14,8 @@ pub enum RobotFileError {
     #[error(transparent)]
     Text(#[from] TextFileError),
     /// The text is not TOML, or a key or value is not part of the format.
-    #[error("{file}:{line}:{column}: {}{message}{}", at(key.as_deref()), hint(nearest.as_deref()))]
-    Syntax {
-        /// The file.
-        file: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column in characters, from 1.
-        column: usize,
-        /// Path of the key.
-        key: Option<String>,
-        /// What is wrong.
-        message: String,
-        /// The nearest valid key or value.
-        nearest: Option<String>,
-    },
+    #[error(transparent)]
+    Syntax(#[from] TomlError),
     /// A key holds a value that does not fit the description or breaks a rule.
     #[error("{file}:{line}: `{key}` {why}")]
     Invalid {
@@ -58,10 +46,6 @@ pub enum RobotFileError {
         /// All names.
         available: Vec<String>,
     },
-}
-
-fn at(key: Option<&str>) -> String {
-    key.map_or_else(String::new, |key| format!("at `{key}`: "))
 }
 
 /// A key and what is wrong with it: goes on after the key.

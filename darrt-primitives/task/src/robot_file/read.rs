@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use super::error::Fault;
 use super::{RobotFile, RobotFileError, VERSION};
 use crate::problem_file::nesting::check_nesting;
-use crate::problem_file::suggest::{nearest_expected, shown};
-use crate::problem_file::toml_path::{line_of, path_at};
+use crate::problem_file::suggest::shown;
+use crate::problem_file::toml_path::line_of;
 use crate::text_file;
+use crate::toml_error::TomlError;
 
 /// Largest accepted robot file in bytes (1 MiB).
 pub const MAX_BYTES: u64 = 1024 * 1024;
@@ -52,18 +53,7 @@ impl Source {
             let why = format!("is {version}, must be {VERSION}: the file is newer than what this program reads");
             return Err(located(text, name, Fault::new("version", why)));
         }
-        let file: RobotFile = toml::from_str(text).map_err(|error| {
-            let place = error.span().unwrap_or(0..text.len());
-            let (line, column) = text_file::line_and_column(text, place.start);
-            RobotFileError::Syntax {
-                file: name.to_owned(),
-                line,
-                column,
-                key: path_at(text, &place).map(|path| shown(&path)),
-                nearest: nearest_expected(error.message()).map(|name| shown(&name)),
-                message: text_file::one_line(error.message()),
-            }
-        })?;
+        let file: RobotFile = toml::from_str(text).map_err(|error| TomlError::of(&error, text, name))?;
         let source = Self { file, name: name.to_owned(), folder, text: text.to_owned() };
         source.check_numbers().map_err(|fault| source.located(fault))?;
         Ok(source)
