@@ -8,7 +8,7 @@
 //! Units are SI, angles are radians unless the key ends in `_deg`, the world frame has the floor at z = 0 and z
 //! up, quaternions are `[x, y, z, w]`.
 
-mod arrays;
+pub(crate) mod arrays;
 pub mod collection;
 pub mod error;
 pub mod geometry;

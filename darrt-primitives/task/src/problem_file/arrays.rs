@@ -1,15 +1,15 @@
 //! Arrays of a fixed length: the TOML reader drops what is too much of them without a word.
 
+use serde::Serialize;
 use toml::Value;
 
-use super::ProblemFile;
 use super::error::{Flaw, Located};
 
 /// Every array of the text has as many entries as what was read from it.
 ///
 /// # Errors
 /// The first that has not, with its key.
-pub(super) fn check_lengths(text: &Value, read: &ProblemFile) -> Result<(), Located> {
+pub(crate) fn check_lengths(text: &Value, read: &impl Serialize) -> Result<(), Located> {
     // What cannot be written is refused later, with a better reason.
     let Ok(read) = Value::try_from(read) else { return Ok(()) };
     walk(text, &read, "")

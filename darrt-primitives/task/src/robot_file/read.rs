@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::error::Fault;
 use super::{RobotFile, RobotFileError, VERSION};
+use crate::problem_file::arrays::check_lengths;
+use crate::problem_file::error::Flaw;
 use crate::problem_file::nesting::check_nesting;
 use crate::problem_file::suggest::shown;
 use crate::problem_file::toml_path::line_of;
@@ -47,13 +49,18 @@ impl Source {
 
     fn parse(text: &str, name: &str, folder: Option<PathBuf>) -> Result<Self, RobotFileError> {
         text_file::check(text, name, MAX_BYTES, check_nesting)?;
-        let newer = toml::from_str::<toml::Value>(text).ok();
-        let newer = newer.and_then(|raw| raw.get("version")?.as_integer()).filter(|v| *v > i64::from(VERSION));
+        let raw = toml::from_str::<toml::Value>(text).ok();
+        let version = raw.as_ref().and_then(|raw| raw.get("version")?.as_integer());
+        let newer = version.filter(|version| *version > i64::from(VERSION));
         if let Some(version) = newer {
             let why = format!("is {version}, must be {VERSION}: the file is newer than what this program reads");
             return Err(located(text, name, Fault::new("version", why)));
         }
         let file: RobotFile = toml::from_str(text).map_err(|error| TomlError::of(&error, text, name))?;
+        if let Some(raw) = &raw {
+            let is_wrong = |(key, flaw): (String, Flaw)| located(text, name, Fault::new(key, flaw.to_string()));
+            check_lengths(raw, &file).map_err(is_wrong)?;
+        }
         let source = Self { file, name: name.to_owned(), folder, text: text.to_owned() };
         source.check_numbers().map_err(|fault| source.located(fault))?;
         Ok(source)
@@ -151,5 +158,13 @@ mod tests {
         let negative = message(&text.replace(negative, "payload_kg = -1"));
         assert!(negative.contains(&format!("my.toml:{}: `arm.payload_kg` is -1", line("payload_kg"))), "{negative}");
         assert!(message("format = = 1").starts_with("my.toml:1:"));
+    }
+
+    #[test]
+    fn an_array_with_an_entry_too_many_is_refused() {
+        let text = shipped::all()[0].text;
+        let pose = text.lines().find(|line| line.starts_with("xyz = [")).unwrap();
+        let longer = message(&text.replace(pose, "xyz = [0, 0, 0.1, 5]"));
+        assert!(longer.contains(".xyz` has 4 entries, must have 3"), "{longer}");
     }
 }
