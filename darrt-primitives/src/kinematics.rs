@@ -30,7 +30,7 @@ pub mod tree;
 pub mod urdf;
 
 pub use batch::{BatchForward, BatchPoses, PoseLanes};
-pub use chain_inverse::{ChainInverse, InverseOptions, JointValues, MOST_JOINTS};
+pub use chain_inverse::{ChainInverse, InverseOptions, JointValues};
 pub use collision::{folders_above, link_bodies, mesh_folders, no_meshes};
 pub use jacobian::Chain;
 pub use limit::JointLimit;

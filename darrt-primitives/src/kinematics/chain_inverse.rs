@@ -21,11 +21,10 @@ use constants::{Column, Constants, Target};
 use seeds::Seeds;
 use step::Step;
 
-/// Most joints of a chain that [`ChainInverse`] takes.
-pub const MOST_JOINTS: usize = 16;
+use crate::joints::MAX_JOINTS;
 
 /// One value per joint of a chain, base side first: rad (turning) or m (sliding).
-pub type JointValues = ArrayVec<f64, MOST_JOINTS>;
+pub type JointValues = ArrayVec<f64, MAX_JOINTS>;
 
 /// Settings of [`ChainInverse`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,8 +56,8 @@ impl Default for InverseOptions {
 #[derive(Debug, Clone)]
 pub struct ChainInverse {
     constants: Constants,
-    variables: ArrayVec<usize, MOST_JOINTS>,
-    limits: ArrayVec<JointLimit, MOST_JOINTS>,
+    variables: ArrayVec<usize, MAX_JOINTS>,
+    limits: ArrayVec<JointLimit, MAX_JOINTS>,
     options: InverseOptions,
     seeds: Seeds,
 }
@@ -85,7 +84,7 @@ impl ChainInverse {
     ///
     /// # Errors
     /// As [`Chain::new`]; [`KinematicsError::NoJoint`] when nothing between them moves, [`KinematicsError::TooManyJoints`]
-    /// for more than [`MOST_JOINTS`] joints.
+    /// for more than [`MAX_JOINTS`] joints.
     pub fn new(
         tree: &KinematicTree,
         base: &str,
@@ -98,15 +97,15 @@ impl ChainInverse {
         if count == 0 {
             return Err(KinematicsError::NoJoint { base: base.to_owned(), tip: tip.to_owned() });
         }
-        if count > MOST_JOINTS {
+        if count > MAX_JOINTS {
             let names = (base.to_owned(), tip.to_owned());
-            return Err(KinematicsError::TooManyJoints { base: names.0, tip: names.1, count, bound: MOST_JOINTS });
+            return Err(KinematicsError::TooManyJoints { base: names.0, tip: names.1, count, bound: MAX_JOINTS });
         }
         let limit = |variable: &usize| {
             let v = tree.variables().get(*variable);
             v.map_or(JointLimit::UNLIMITED, |v| if options.soft_limits { v.soft_limit } else { v.limit })
         };
-        let limits: ArrayVec<_, MOST_JOINTS> = chain.variables().iter().map(limit).collect();
+        let limits: ArrayVec<_, MAX_JOINTS> = chain.variables().iter().map(limit).collect();
         let constants = Constants::new(tree, &chain, tip_from_tool);
         let seeds = Seeds::new(&constants, &limits);
         Ok(Self { constants, variables: chain.variables().iter().copied().collect(), limits, options, seeds })
@@ -185,7 +184,7 @@ impl ChainInverse {
 
     /// One descent from `joints`, which lie within the limits and stay there.
     fn descend(&self, target: &Target, joints: &mut JointValues, turns: Turns) -> End {
-        let mut columns = [Column::default(); MOST_JOINTS];
+        let mut columns = [Column::default(); MAX_JOINTS];
         let Some(columns) = columns.get_mut(..joints.len()) else {
             return End::Stuck;
         };

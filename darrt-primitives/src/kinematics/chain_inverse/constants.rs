@@ -3,7 +3,7 @@
 use arrayvec::ArrayVec;
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
-use super::MOST_JOINTS;
+use super::MAX_JOINTS;
 use crate::kinematics::jacobian::Chain;
 use crate::kinematics::limit::JointLimit;
 use crate::kinematics::tree::{Drive, KinematicTree, LinkMotion};
@@ -30,7 +30,7 @@ pub(super) struct Constants {
     tool_rotation: Matrix3<f64>,
     tool_translation: Vector3<f64>,
     length_m: f64,
-    turning: ArrayVec<bool, MOST_JOINTS>,
+    turning: ArrayVec<bool, MAX_JOINTS>,
 }
 
 /// A pose to be reached.
@@ -85,7 +85,7 @@ impl Constants {
             link = parent;
         }
         let mut joints = Vec::with_capacity(chain.variables().len());
-        let mut turning: ArrayVec<bool, MOST_JOINTS> = chain.variables().iter().map(|_| false).collect();
+        let mut turning: ArrayVec<bool, MAX_JOINTS> = chain.variables().iter().map(|_| false).collect();
         let mut way = Isometry3::identity();
         for link in links.into_iter().rev() {
             let (Some(parent_from_link), Some(motion)) = (tree.parent_from_link(link), tree.motion(link)) else {
@@ -194,7 +194,7 @@ impl Constants {
     /// The geometric Jacobian as in [`Chain::jacobian`].
     pub(super) fn error(&self, values: &[f64], target: &Target, columns: &mut [Column]) -> PoseError {
         // More joints than columns: some follow others.
-        let mut axes: ArrayVec<(Vector3<f64>, Vector3<f64>), { 2 * MOST_JOINTS }> = ArrayVec::new();
+        let mut axes: ArrayVec<(Vector3<f64>, Vector3<f64>), { 2 * MAX_JOINTS }> = ArrayVec::new();
         let (rotation, position) = self.pass(values, |_, axis, point| {
             let _full = axes.try_push((axis, point));
         });

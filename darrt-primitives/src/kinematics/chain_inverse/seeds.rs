@@ -11,7 +11,7 @@ use nalgebra::Isometry3;
 use rand::{Rng, RngExt};
 
 use super::constants::Constants;
-use super::{JointValues, MOST_JOINTS};
+use super::{JointValues, MAX_JOINTS};
 use crate::kinematics::limit::JointLimit;
 
 /// Configurations in the table.
@@ -99,7 +99,7 @@ impl Seeds {
         out.clear();
         // The joints are no more than fit.
         let value = |range: &Range| range.lower + range.width * (0.5 + range.step * index as f64).fract();
-        out.extend(self.joints.iter().take(MOST_JOINTS).map(value));
+        out.extend(self.joints.iter().take(MAX_JOINTS).map(value));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Turns;
 use super::constants::{Column, PoseError};
-use super::{JointValues, LONGEST_STEP, MOST_JOINTS};
+use super::{JointValues, LONGEST_STEP, MAX_JOINTS};
 use crate::kinematics::limit::JointLimit;
 use std::f64::consts::TAU;
 
@@ -24,7 +24,7 @@ impl Step<'_> {
     pub(super) fn take(&self, joints: &mut JointValues, turns: Turns) -> bool {
         let error = self.error.row();
         let damping = DAMPING * self.error.square() + LEAST_DAMPING;
-        let mut free = [true; MOST_JOINTS];
+        let mut free = [true; MAX_JOINTS];
         for ((free, column), (value, limit)) in free.iter_mut().zip(self.columns).zip(joints.iter().zip(self.limits)) {
             // A joint at its limit that would move further out is held.
             let slope = dot(column, &error);
@@ -33,7 +33,7 @@ impl Step<'_> {
         let Some(pull) = damped(self.columns, &free, damping, &error) else {
             return false;
         };
-        let mut changes = [0.0; MOST_JOINTS];
+        let mut changes = [0.0; MAX_JOINTS];
         let mut largest = 0.0_f64;
         for ((change, column), free) in changes.iter_mut().zip(self.columns).zip(free) {
             if free {
