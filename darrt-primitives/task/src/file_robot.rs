@@ -3,6 +3,7 @@
 //!
 //! [`MAX_JOINTS`]: darrt_primitives::joints::MAX_JOINTS
 
+mod apart;
 mod bases;
 mod chain;
 pub mod choose;

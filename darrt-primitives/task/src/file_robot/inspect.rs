@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use darrt_core::random::{Purpose, Stream, stream};
-use darrt_geom::clearance;
 use darrt_primitives::joints::Joints;
 use darrt_primitives::kinematics::KinematicTree;
 use darrt_primitives::laws::{ManipulatorClaims, ReachClaims, check_manipulator, check_reaches};
-use darrt_primitives::manipulator::{Configuration, JointVector as _, LinkGroup, Manipulator as _};
+use darrt_primitives::manipulator::{Configuration, LinkGroup, Manipulator as _};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::RngExt as _;
 
+use super::apart::{distances, drawn_arm};
 use super::load::Loaded;
 use super::{FileRobot, shipped};
 use crate::problem_file::Limits;
@@ -139,14 +139,12 @@ fn rng(number: u64) -> Stream {
 }
 
 fn drawn(robot: &FileRobot, rng: &mut Stream) -> Option<Configuration<Joints>> {
-    let values: Vec<f64> = robot
-        .limits
-        .iter()
-        .map(|limit| {
-            if limit.is_unlimited() { rng.random_range(-3.1..3.1) } else { rng.random_range(limit.lower..=limit.upper) }
-        })
-        .collect();
-    Some(Configuration { base: [0.0; 3], arm: Joints::from_values(&values)? })
+    Some(Configuration { base: [0.0; 3], arm: drawn_arm(robot, rng)? })
+}
+
+/// How far the hand is open while links are looked at, metres.
+fn gap_m(robot: &FileRobot) -> f64 {
+    0.8 * robot.hand().max_gap_m()
 }
 
 /// How many poses that the tool can reach are found.
@@ -181,25 +179,11 @@ fn laws(robot: &FileRobot) -> Option<String> {
         .map(|broken| broken.to_string())
 }
 
-/// The distances of all pairs of links that may touch or not: `None` where it is not known.
-fn distances(robot: &FileRobot, arm: &Joints, pairs: &[(usize, usize)]) -> Vec<Option<f64>> {
-    let mut poses = vec![Isometry3::identity(); robot.links().len()];
-    robot.link_poses(&Configuration { base: [0.0; 3], arm: *arm }, 0.8 * robot.hand().max_gap_m(), &mut poses);
-    let between = |(a, b): &(usize, usize)| {
-        let ((a, at), (b, bt)) = ((robot.links().get(*a)?, poses.get(*a)?), (robot.links().get(*b)?, poses.get(*b)?));
-        clearance::between(&a.body, at, &b.body, bt).ok().map(|found| found.distance)
-    };
-    pairs.iter().map(between).collect()
-}
-
 /// Postures in which links touch.
 fn postures(loaded: &Loaded, robot: &FileRobot, odd: &mut Vec<String>) {
     for (name, arm) in &robot.postures {
         let pairs = robot.self_pairs();
-        let touching = distances(robot, arm, pairs)
-            .into_iter()
-            .zip(pairs)
-            .filter(|(distance, _)| distance.is_some_and(|d| d <= 0.0));
+        let touching = distances(robot, arm, gap_m(robot), pairs).zip(pairs).filter(|(distance, _)| *distance <= 0.0);
         let names: Vec<_> = touching.map(|(_, pair)| pair_name(robot, *pair)).collect();
         if !names.is_empty() {
             let place = format!("{}:{}", loaded.source.name, loaded.source.line(&format!("postures.{name}")));
@@ -224,8 +208,8 @@ fn self_touching(loaded: &Loaded, robot: &FileRobot, odd: &mut Vec<String>) {
     let mut touches = vec![0_usize; pairs.len()];
     for _ in 0..SELF_SAMPLES {
         let Some(q) = drawn(robot, &mut rng) else { return };
-        for (count, distance) in touches.iter_mut().zip(distances(robot, &q.arm, pairs)) {
-            *count += usize::from(distance.is_some_and(|d| d <= 0.0));
+        for (count, distance) in touches.iter_mut().zip(distances(robot, &q.arm, gap_m(robot), pairs)) {
+            *count += usize::from(distance <= 0.0);
         }
     }
     for (pair, count) in pairs.iter().zip(touches) {

@@ -1,12 +1,11 @@
 //! A posture to start from, and the pairs of links that stand in each other.
 
 use darrt_core::random::{Purpose, stream};
-use darrt_geom::clearance;
-use darrt_primitives::manipulator::{Configuration, Manipulator as _};
+use darrt_primitives::manipulator::Manipulator as _;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::RngExt as _;
 
-use super::super::FileRobot;
+use super::super::apart::{distances, drawn_arm};
 use super::super::load::Loaded;
 use crate::problem_file::Limits;
 use crate::robot_file::RobotFileError;
@@ -26,12 +25,13 @@ type Found = (Option<Vec<f64>>, Vec<[String; 2]>);
 pub(super) fn search(loaded: &Loaded) -> Result<Found, RobotFileError> {
     let robot = loaded.robot(Limits::Soft, [0.0; 3])?;
     let mut rng = stream(0, 0, 0, Purpose::Extend);
+    let gap_m = robot.hand().max_gap_m();
     let pairs = robot.self_pairs().to_vec();
     let mut touches = vec![0_usize; pairs.len()];
     for _ in 0..SAMPLES {
-        let Some(arm) = drawn(&robot, &mut rng) else { break };
-        for (count, pair) in touches.iter_mut().zip(&pairs) {
-            *count += usize::from(apart_m(&robot, &arm, *pair) <= 0.0);
+        let Some(arm) = drawn_arm(&robot, &mut rng) else { break };
+        for (count, distance) in touches.iter_mut().zip(distances(&robot, &arm, gap_m, &pairs)) {
+            *count += usize::from(distance <= 0.0);
         }
     }
     let is_joined = |count: &usize| *count as f64 >= JOINED * SAMPLES as f64;
@@ -65,31 +65,9 @@ pub(super) fn search(loaded: &Loaded) -> Result<Found, RobotFileError> {
         if best.as_ref().is_some_and(|(most, _)| *most >= room) {
             continue;
         }
-        if kept.iter().all(|pair| apart_m(&robot, &arm, *pair) > APART_M) {
+        if distances(&robot, &arm, gap_m, &kept).all(|distance| distance > APART_M) {
             best = Some((room, arm.as_ref().to_vec()));
         }
     }
     Ok((best.map(|(_, values)| values), ignore.collect()))
-}
-
-type Arm = darrt_primitives::joints::Joints;
-
-fn drawn(robot: &FileRobot, rng: &mut darrt_core::random::Stream) -> Option<Arm> {
-    let values = robot.limits().iter().map(|limit| {
-        if limit.is_unlimited() { rng.random_range(-3.1..3.1) } else { rng.random_range(limit.lower..=limit.upper) }
-    });
-    darrt_primitives::manipulator::JointVector::from_values(&values.collect::<Vec<_>>())
-}
-
-/// How far two links are apart, metres.
-fn apart_m(robot: &FileRobot, arm: &Arm, (a, b): (usize, usize)) -> f64 {
-    let mut poses = vec![Isometry3::identity(); robot.links().len()];
-    let gap_m = robot.hand().max_gap_m();
-    robot.link_poses(&Configuration { base: [0.0; 3], arm: *arm }, gap_m, &mut poses);
-    let links = robot.links();
-    let (Some(first), Some(second), Some(at), Some(bt)) = (links.get(a), links.get(b), poses.get(a), poses.get(b))
-    else {
-        return f64::INFINITY;
-    };
-    clearance::between(&first.body, at, &second.body, bt).map_or(f64::INFINITY, |found| found.distance)
 }
