@@ -133,6 +133,7 @@ fn closer(clearances: [f64; 2]) -> [Closer; 2] {
         ones: BodySet::from_iter([BodyIndex::new(i)]),
         others: BodySet::ALL,
         clearance: clearances[usize::from(i)],
+        only: None,
     })
 }
 

@@ -47,6 +47,7 @@ Exit codes:
   4    the output cannot be written
   5    not solved within the budget, and the beginning of a plan is written (PROBLEM.partial.json);
        with `check`: the plan is such a beginning, and right
+  6    proven before the search: the problem, as it is written, has no plan
   130  interrupted";
 
 /// The commands.

@@ -25,6 +25,7 @@ pub(crate) fn explain(result: &PlanResult, diagnosis: &Diagnosis) -> String {
     let first =
         format!("{} after {}, {}", result.stop, seconds(result.elapsed), counted(result.iterations, "iteration"));
     let mut lines: Vec<_> = diagnosis.causes.iter().flat_map(words::of_cause).collect();
+    lines.extend(nearer(result));
     let last = advice(result, diagnosis);
     let room = LINES - 1 - last.len() - usize::from(result.partial.is_some());
     if lines.len() > room {
@@ -57,13 +58,18 @@ fn what_was_met(result: &PlanResult) -> Vec<String> {
     for ((first, second), count) in result.accounts.worst_blocks(PAIRS) {
         lines.push(format!("in the way {}: {first} and {second}", counted(count, "time")));
     }
-    for NearPair { bodies: [first, second], distance_m, is_at_goal } in &result.near {
-        let place = if *is_at_goal { "at the goal" } else { "at the start" };
-        let apart_mm = distance_m * 1000.0;
-        lines.push(format!("nearer than the least margin {place}: {first} and {second}, {apart_mm:.2} mm apart"));
-    }
+    lines.extend(nearer(result));
     lines.extend(never_worked(&result.accounts));
     lines
+}
+
+/// What the problem itself puts nearer to each other than the margin.
+fn nearer(result: &PlanResult) -> impl Iterator<Item = String> + '_ {
+    result.near.iter().map(|NearPair { bodies: [first, second], distance_m, is_at_goal }| {
+        let place = if *is_at_goal { "at the goal" } else { "at the start" };
+        let apart_mm = distance_m * 1000.0;
+        format!("nearer than the least margin {place}: {first} and {second}, {apart_mm:.2} mm apart")
+    })
 }
 
 /// With as many digits as a short time needs.
@@ -141,7 +147,7 @@ mod tests {
             plan: None,
             plans: 0,
             near: Vec::new(),
-            doubts: vec!["no way".to_owned()],
+            doubts: vec![darrt_task::planning::Doubt { words: "no way".to_owned(), refuted: None }],
             stop: Stop::TimeLimit,
             accounts,
             iterations,

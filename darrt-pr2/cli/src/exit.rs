@@ -6,6 +6,7 @@ use crate::bench::BenchError;
 use crate::generate::GenerateError;
 use darrt_task::picture::PictureError;
 use darrt_task::plan_file::PlanFileError;
+use darrt_task::planning_error::PlanningError;
 use darrt_task::problem_file::ProblemFileError;
 use darrt_task::robot_file::RobotFileError;
 use darrt_task::text::on_one_line;
@@ -27,6 +28,8 @@ pub enum Exit {
     /// The budget ended before a plan was found, and the beginning of one is written; or a plan that is judged is such a
     /// beginning, and right.
     Partial = 5,
+    /// It is proven before the search that the problem, as it is written, has no plan.
+    Impossible = 6,
     /// Interrupted by the user.
     Interrupted = 130,
 }
@@ -55,6 +58,13 @@ impl Failure {
     /// Bad input or usage: one line, whatever the names in it.
     pub fn input(message: impl AsRef<str>) -> Self {
         Self::new(Exit::BadInput, on_one_line(message.as_ref()))
+    }
+}
+
+impl From<PlanningError> for Failure {
+    fn from(error: PlanningError) -> Self {
+        let exit = if error.is_impossible() { Exit::Impossible } else { Exit::BadInput };
+        Self::new(exit, on_one_line(&error.to_string()))
     }
 }
 

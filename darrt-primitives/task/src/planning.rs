@@ -30,7 +30,8 @@ use darrt_primitives::validity::SceneValidity;
 use nalgebra::Isometry3;
 
 use crate::clock::{NoClock, give_clock};
-use crate::doubts::Outlook;
+pub use crate::doubts::Doubt;
+use crate::doubts::{Outlook, of_meshes};
 use crate::export::{Exporter, Written};
 use crate::plan_file::{PlanFile, PlannerFacts, Pose, SearchName};
 use crate::planning_error::PlanningError;
@@ -144,8 +145,8 @@ pub struct PlanResult {
     pub plans: u64,
     /// What the problem itself puts nearer to each other than the least margin.
     pub near: Vec<NearPair>,
-    /// What made a plan unlikely before the search, in words.
-    pub doubts: Vec<String>,
+    /// What made a plan unlikely before the search.
+    pub doubts: Vec<Doubt>,
     /// Why it stopped.
     pub stop: Stop,
     /// Counts per primitive.
@@ -223,8 +224,8 @@ pub struct Prepared<M: TaskRobot> {
     pub problem: Problem<Tabletop<M>>,
     /// What the problem itself puts nearer to each other than the least margin.
     pub near: Vec<NearPair>,
-    /// What makes a plan unlikely, in words; empty for most problems.
-    pub doubts: Vec<String>,
+    /// What makes a plan unlikely; empty for most problems.
+    pub doubts: Vec<Doubt>,
     exporter: Arc<Exporter>,
     facts: Arc<RobotFacts>,
     /// G, of which a partial plan meets some parts.
@@ -265,13 +266,24 @@ fn prepare_watched<M: TaskRobot>(
     let allowed: Vec<_> = registry.allowed(file).collect();
     crate::goal_means::check_means(file, allowed.iter().copied(), &robot)?;
     let robot = if request.bases_from_reachability { robot.with_bases_from_reachability() } else { robot };
+    let mut doubts = file.geometry().map(|geometry| of_meshes(file, &geometry)).unwrap_or_default();
+    // What is wrong with the start may be so because of what is doubted.
+    let so_far: Vec<_> = doubts.iter().map(|doubt| doubt.words.clone()).collect();
+    let with_doubts = |error: PlanningError| match error {
+        error if so_far.is_empty() => error,
+        error => PlanningError::Doubtful { error: Box::new(error), doubts: so_far.join("; ") },
+    };
     let Built { world, start, goal, scene, near } = world::build_with(registry, file, robot, arm)?;
     let validity = SceneValidity::new(&world);
-    let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal, scene: &scene };
+    let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal };
     let immovable = outlook.immovable();
-    crate::goal_check::check_goal(&world, &goal, &scene, &start, &immovable)?;
+    let blocked = crate::goal_check::check_goal(&world, &goal, &scene, &start, &immovable).map_err(&with_doubts)?;
     outlook.check_rims()?;
-    let doubts = outlook.doubts(&immovable);
+    doubts.extend(blocked.map(|words| {
+        let refuted = Some("the goal is not blocked, which was doubted".to_owned());
+        Doubt { words, refuted }
+    }));
+    doubts.extend(outlook.doubts(&immovable));
     let facts = Arc::new(M::facts(&file.robot)?);
     let exporter = Arc::new(Exporter::new(file, &facts)?);
     let (whole_goal, robot_facts) = (goal.clone(), Arc::clone(&facts));
@@ -290,7 +302,8 @@ fn prepare_watched<M: TaskRobot>(
         primitives: primitives.map(|part| Box::new(Timed { part, watch: Arc::clone(watch) }) as _).collect(),
         validity: Box::new(Timed { part: validity, watch: Arc::clone(watch) }),
         verifier: Box::new(verifier),
-    })?;
+    })
+    .map_err(|error| with_doubts(error.into()))?;
     Ok(Prepared { problem, near, doubts, exporter, facts: robot_facts, goal: whole_goal })
 }
 
@@ -351,8 +364,8 @@ pub(crate) fn plan_without_clock<M: TaskRobot>(
         return Err(PlanningError::NoLimit);
     }
     let begun = watch.elapsed();
-    for reason in &prepared.doubts {
-        if observer.on_event(&Event::Doubt { reason }).is_break() {
+    for doubt in &prepared.doubts {
+        if observer.on_event(&Event::Doubt { reason: &doubt.words }).is_break() {
             cancel.cancel();
         }
     }

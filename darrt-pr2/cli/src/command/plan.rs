@@ -20,7 +20,7 @@ use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
 use darrt_task::replan::{ReplanRequest, Replanned};
 use darrt_task::robot::{RobotError, RobotFacts};
-use darrt_task::text::counted;
+use darrt_task::text::{counted, on_one_line};
 
 /// Plans and reports.
 ///
@@ -65,6 +65,9 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
             output.print(&safety::notices(&proof.warnings))?;
         }
         check::notices(plan, output)?;
+        for shown in result.doubts.iter().filter_map(|doubt| doubt.refuted.as_ref()) {
+            output.print(&format!("notice:   {shown}"))?;
+        }
     }
     // Last: nobody waits for a picture to read the steps.
     files.draw(plan, &story, &robot)?;
@@ -179,7 +182,10 @@ fn refused(options: &PlanOptions, request: &PlanRequest, error: &PlanningError) 
     let written = Diagnosis::of_error(&request.problem.name, error).map(|diagnosis| write_why(options, &diagnosis));
     match written {
         Some(Err(failure)) => failure,
-        _ => Failure::input(located(&options.problem, &error.to_string())),
+        _ => {
+            let exit = if error.is_impossible() { Exit::Impossible } else { Exit::BadInput };
+            Failure::new(exit, on_one_line(&located(&options.problem, &error.to_string())))
+        }
     }
 }
 

@@ -25,6 +25,8 @@ pub enum Occupant {
     Immovable,
     /// It is an object whose own goal is there.
     Goal,
+    /// It is a closed mesh around the place.
+    Enclosure,
 }
 
 impl std::fmt::Display for Occupant {
@@ -34,6 +36,7 @@ impl std::fmt::Display for Occupant {
             Self::Fixed => "",
             Self::Immovable => ", which never moves",
             Self::Goal => ", which has its goal there",
+            Self::Enclosure => ", which is closed around it",
         })
     }
 }
