@@ -73,7 +73,7 @@ fn nearer(result: &PlanResult) -> impl Iterator<Item = String> + '_ {
 }
 
 /// With as many digits as a short time needs.
-fn seconds(time: Duration) -> String {
+pub(crate) fn seconds(time: Duration) -> String {
     let s = time.as_secs_f64();
     if s < 0.1 { format!("{s:.3} s") } else { format!("{s:.1} s") }
 }

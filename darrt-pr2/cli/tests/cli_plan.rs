@@ -42,7 +42,7 @@ fn a_plan_is_printed_written_drawn_and_accepted() {
     let folder = tempfile::tempdir().unwrap();
     solved_problem(folder.path());
     let (printed, complaint) = run(folder.path(), &["plan", "easy.toml", "--seed", "3"], 0);
-    for words in ["solved in", "seed 3", "primitive", "waypoints", "verified: ", "easy.plan.json", "easy.html"] {
+    for words in ["solved in", "seed 3", "primitive", "object moves", "verified: ", "easy.plan.json", "easy.html"] {
         assert!(printed.contains(words), "{words}: {printed}");
     }
     assert_eq!(complaint, "", "quiet when piped");

@@ -203,9 +203,9 @@ fn summary(request: &PlanRequest, result: &PlanResult, is_interrupted: bool) -> 
         None => "solved in".to_owned(),
     };
     format!(
-        "{}: {solved} {:.1} s{} (seed {}, {}, {}, largest tree {})",
+        "{}: {solved} {}{} (seed {}, {}, {}, largest tree {})",
         request.problem.name,
-        result.elapsed.as_secs_f64(),
+        diagnosis::seconds(result.elapsed),
         if is_interrupted { ", interrupted" } else { "" },
         request.seed,
         counted(result.iterations, "iteration"),
