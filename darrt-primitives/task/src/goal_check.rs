@@ -350,7 +350,7 @@ mod tests {
         let goal = "position = [-1.0, 2.0, 1.0]";
         let error = checked(goal, &safe([-1.0, 2.0, 1.0])).unwrap_err();
         assert!(
-            matches!(&error, PlanningError::GoalEnclosed { object, by } if object == "plate" && by == "safe"),
+            matches!(&error, PlanningError::GoalEnclosed { object, by, .. } if object == "plate" && by == "safe"),
             "{error}"
         );
         // In the wall it is blocked, beside it free.
