@@ -1,5 +1,7 @@
 //! The steps of a plan as a table.
 
+use comfy_table::ColumnConstraint;
+
 use super::table;
 use darrt_task::picture::story::Story;
 use darrt_task::picture::travel::{Travel, amount};
@@ -16,6 +18,10 @@ pub(crate) fn table(story: &Story) -> String {
         total = total.plus(&travel);
     }
     table.add_row(row("", "all", "", &total));
+    // Names of primitives stay whole; what is long is the user's name of an object.
+    if let Some(column) = table.column_mut(1) {
+        column.set_constraint(ColumnConstraint::ContentWidth);
+    }
     table::finished(table, [0])
 }
 

@@ -270,6 +270,9 @@ fn nothing_of_a_mesh_file_is_lost() {
 fn a_closed_mesh_is_solid_and_an_open_one_says_that_it_is_not() {
     let around = [-1.05, 0.0, 1.0];
     let (code, said) = with_mesh(stl("solid", 3.0, [0.0; 3]), around, 1);
+    // Start and goal are in it; the goal is looked at first.
+    assert!(code == IMPOSSIBLE && said.contains("lamp"), "{said}");
+    let (code, said) = with_mesh(stl("solid", 0.4, [0.0; 3]), [-1.05, 0.0, 0.6], 1);
     assert!(code == BAD_INPUT && said.contains("start is not valid") && said.contains("lamp"), "{said}");
     // A room has an inside: the inner box is a cavity.
     let room = stl("room", 3.2, [0.0; 3]) + &stl("air", 3.0, [0.0; 3]);
@@ -413,7 +416,7 @@ fn a_door_and_a_seam_are_passed() {
         rooms += &block(name, size, at);
     }
     rooms += "[[surface]]\nname = \"stand\"\ntop_of = \"stand\"\n";
-    solved(&cup(&[(GOAL, "on = \"stand\"\nat = [3.25, 0.0]")], &rooms), 100);
+    ends(&cup(&[(GOAL, "on = \"stand\"\nat = [3.2, 0.0]")], &rooms), 100, &[SOLVED], &[]);
     let leaf = block("leaf", [0.9, 0.8, 0.7], [0.9, 0.15, 0.35]) + "[[surface]]\nname = \"leaf\"\ntop_of = \"leaf\"\n";
     let dish =
         [(ROUND, "shape = { cylinder = { radius = 0.12, height = 0.02 } }"), ("grasps = [\"side\"]", "grasps = []")];

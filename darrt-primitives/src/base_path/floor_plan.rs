@@ -41,6 +41,8 @@ pub(crate) struct Gap {
 /// Wider gaps than this are passed by every robot, metres.
 const WIDE_M: f64 = 2.0;
 
+/// What rounding may do to a length, metres.
+const ROUNDING_M: f64 = 1e-9;
 /// Most gaps that are kept.
 const MOST_GAPS: usize = 10_000;
 
@@ -106,7 +108,12 @@ impl FloorPlan {
                 let (width_m, middle) = (contact.distance_m, a.outline.beside(&contact));
                 let is_filled = |k: usize| {
                     let outline = self.obstacles.get(k).filter(|_| k != i && k != j).map(|other| &other.outline);
-                    outline.is_some_and(|outline| outline.beyond_m(&middle) <= 0.0)
+                    // OPTIMIZATION: mostly the circle around it says that it is elsewhere.
+                    outline.is_some_and(|outline| {
+                        let reach_m = outline.reach_m() + ROUNDING_M;
+                        let is_near = (outline.centre() - middle).norm_squared() <= reach_m * reach_m;
+                        is_near && outline.beyond_m(&middle) <= 0.0
+                    })
                 };
                 if width_m > 0.0 && width_m < WIDE_M && !between(middle.x, middle.x).any(is_filled) {
                     self.gaps.push(Gap { middle, width_m });
