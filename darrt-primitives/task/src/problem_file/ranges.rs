@@ -172,7 +172,7 @@ pub(crate) fn write(schema: &mut Value) {
         }
     }
     if let Some(goal) = schema.pointer_mut("/$defs/ObjectGoal").and_then(Value::as_object_mut) {
-        let given = |key: &str| json!({ "required": [key], "properties": { key: { "not": { "type": "null" } } } });
+        let given = |key: &str| json!({ "required": [key] });
         goal.insert("anyOf".to_owned(), json!([given("on"), given("position")]));
     }
 }
