@@ -30,6 +30,7 @@ Examples:
   darrt problems                      the built-in problems: the paper's, and others
   darrt plan plate3                   solve one; writes plate3.plan.json and plate3.html
   darrt show plate3.plan.json         draw a plan again
+  darrt plan plate3 --record r.json   keep the search too; then: darrt show r.json -o tree.graphml
   darrt check plate3.plan.json        judge a plan, for example one edited by hand
   darrt export plate3.plan.json --to json
                                       the plan on its clock, for a controller
@@ -44,7 +45,7 @@ Exit codes:
   1    not solved within the budget; a plan that is executed fails in some run
   2    bad input or usage
   3    the verifier refuses the plan; with `check --strict` also a plan with warnings
-  4    the output cannot be written
+  4    the output cannot be written, or not be opened
   5    not solved within the budget, and the beginning of a plan is written (PROBLEM.partial.json);
        with `check`: the plan is such a beginning, and right
   130  interrupted";
@@ -56,6 +57,8 @@ pub enum Command {
     Plan(PlanOptions),
     /// Find out with which changes a problem has a plan
     Explain(ExplainOptions),
+    /// Look at a state, a place of the hand, a grasp or a plan that you have in mind: what is wrong first, and what works nearby
+    WhyNot(WhyNotOptions),
     /// Judge a plan file with the verifier
     Check(CheckOptions),
     /// Execute a plan in physics: free objects, fingers of limited force, errors of perception and motion
@@ -150,7 +153,8 @@ pub struct PlanOptions {
     /// Write the plan here [default: PROBLEM.plan.json in the current folder, without the problem's own ending]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Write the picture here: .html (3-D, moving), .svg, .png or .glb [default: beside the plan, .html]
+    /// Write the picture here: .html (3-D, moving), .svg, .png or .glb [default: beside the plan, .html]. Where there is no
+    /// plan, a page that ends in .why.html tells why
     #[arg(long, value_name = "FILE", conflicts_with = "no_picture")]
     pub picture: Option<PathBuf>,
     /// Write no picture
@@ -168,6 +172,12 @@ pub struct PlanOptions {
     /// Where there is no plan, write down why as JSON
     #[arg(long, value_name = "FILE")]
     pub why: Option<PathBuf>,
+    /// Keep how the search went, as JSON: for `darrt show FILE` and as a layer of the page
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
+    /// Open the page in the browser
+    #[arg(long, conflicts_with = "no_picture")]
+    pub open: bool,
     /// Print nothing but errors
     #[arg(short, long, conflicts_with = "stats")]
     pub quiet: bool,
@@ -198,6 +208,47 @@ pub struct ExplainOptions {
     #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
     /// Print the answer as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+const WHY_NOT_EXAMPLES: &str = "\
+Examples:
+  darrt why-not plate3 --tool 0.9,0.1,0.85,0,1.2,0  may the hand be there, and where would the robot stand?
+  darrt why-not bowl --tool 0.6,0,0.9,0,1.57,0 --take bowl
+                                                    may the hand take the bowl so?
+  darrt why-not mine.toml --base 0.5,0.2,1.57       may the robot stand there, its arm as at the start?
+  darrt why-not mine.plan.json                      what is wrong with a plan, or what its beginning still lacks
+
+Metres and radians, as in problem and plan files; a rotation is roll, pitch, yaw about the fixed axes x, y, z.
+The other things are where the problem starts. A plan is planned on from the last step that is right.
+The same question has the same answer. Exit code 1: something is wrong.";
+
+/// Options of `darrt why-not`.
+#[derive(Debug, Args)]
+#[command(after_help = WHY_NOT_EXAMPLES)]
+pub struct WhyNotOptions {
+    /// Name of a built-in problem, a problem file, or a plan file
+    pub source: String,
+    /// The frame of the tool in the world: x out of the hand, y across the fingers
+    #[arg(long, value_name = "X,Y,Z,ROLL,PITCH,YAW", value_parser = six, allow_hyphen_values = true)]
+    pub tool: Option<[f64; 6]>,
+    /// The hand is there to take this object
+    #[arg(long, value_name = "OBJECT", requires = "tool")]
+    pub take: Option<String>,
+    /// The base [default: where the problem starts]
+    #[arg(long, value_name = "X,Y,YAW", value_parser = three, allow_hyphen_values = true, conflicts_with = "tool")]
+    pub base: Option<[f64; 3]>,
+    /// The joints of the arm, from the base outwards [default: as the problem starts]
+    #[arg(long, value_name = "J1,J2,...", value_delimiter = ',', value_parser = coordinate, allow_hyphen_values = true, conflicts_with = "tool")]
+    pub joints: Option<Vec<f64>>,
+    /// Seed for planning on from a plan
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
+    pub seed: u64,
+    /// Iterations for planning on from a plan
+    #[arg(long, default_value_t = 1000, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true)]
+    pub iterations: u64,
+    /// Print the answer about a state, a place or a grasp as JSON
     #[arg(long)]
     pub json: bool,
 }
@@ -277,14 +328,24 @@ pub struct ProblemsOptions {
 /// Options of `darrt show`.
 #[derive(Debug, Args)]
 pub struct ShowOptions {
-    /// Name of a built-in problem, a problem file, or a plan file (.json)
+    /// Name of a built-in problem, a problem file, a plan file (.json), or a recorded search (.json)
     pub source: String,
-    /// Write the picture here: .html (3-D, moving), .svg, .png or .glb [default: PROBLEM.html in the current folder]
+    /// Write the picture here: .html (3-D, moving), .svg, .png or .glb; a recorded search: .html, .graphml or .dot
+    /// [default: PROBLEM.html in the current folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Leave out the small view of every step
     #[arg(long)]
     pub overview: bool,
+    /// Of a recorded search, show this attempt only
+    #[arg(long, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
+    pub attempt: Option<u64>,
+    /// Of a recorded search, show the trees as they were behind this iteration of each attempt
+    #[arg(long, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
+    pub iteration: Option<u64>,
+    /// Open the page in the browser
+    #[arg(long)]
+    pub open: bool,
 }
 
 const EXPORT_EXAMPLES: &str = "\
@@ -529,6 +590,28 @@ fn seeds(text: &str) -> Result<Range<u64>, String> {
     range.ok_or_else(|| "must be a count above 0, or A..B with A below B".to_owned())
 }
 
+/// A length or an angle.
+fn coordinate(text: &str) -> Result<f64, String> {
+    const MOST: f64 = 1e6;
+    let value = text.trim().parse().ok().filter(|value: &f64| value.abs() <= MOST);
+    value.ok_or_else(|| format!("must be a number, at most {MOST:e} in size; `{text}` is not"))
+}
+
+/// So many numbers with commas between.
+fn coordinates<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let values = text.split(',').map(coordinate).collect::<Result<Vec<_>, _>>()?;
+    let found = values.len();
+    values.try_into().map_err(|_| format!("must be {N} numbers with commas between, not {found}"))
+}
+
+fn three(text: &str) -> Result<[f64; 3], String> {
+    coordinates(text)
+}
+
+fn six(text: &str) -> Result<[f64; 6], String> {
+    coordinates(text)
+}
+
 /// Samples per second.
 fn rate(text: &str) -> Result<f64, String> {
     let value = text.parse().ok().filter(|value: &f64| (1.0..=1000.0).contains(value));
@@ -570,6 +653,15 @@ mod tests {
         }
         assert!(positive("0").is_err() && threads("257").is_err());
         assert_eq!(threads("256"), Ok(256));
+    }
+
+    #[test]
+    fn poses_have_as_many_finite_numbers_as_they_need() {
+        assert_eq!((three("1, -2,0.5"), coordinate("-0")), (Ok([1.0, -2.0, 0.5]), Ok(-0.0)));
+        assert_eq!(six("1,2,3").unwrap_err(), "must be 6 numbers with commas between, not 3");
+        for bad in ["", "1,2,", "1,2,nan", "inf,0,0", "1e7,0,0", "a,b,c"] {
+            assert!(three(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

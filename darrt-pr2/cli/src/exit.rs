@@ -7,6 +7,7 @@ use crate::generate::GenerateError;
 use darrt_task::picture::PictureError;
 use darrt_task::plan_file::PlanFileError;
 use darrt_task::problem_file::ProblemFileError;
+use darrt_task::recording::RecordingError;
 use darrt_task::robot_file::RobotFileError;
 use darrt_task::text::on_one_line;
 use darrt_task::viewer::ViewerError;
@@ -97,6 +98,16 @@ impl From<GenerateError> for Failure {
         let exit = match error {
             GenerateError::Cancelled => Exit::Interrupted,
             GenerateError::NoneSolved { .. } => Exit::NotSolved,
+        };
+        Self::new(exit, on_one_line(&error.to_string()))
+    }
+}
+
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Self {
+        let exit = match error {
+            RecordingError::Write { .. } => Exit::CannotWrite,
+            _ => Exit::BadInput,
         };
         Self::new(exit, on_one_line(&error.to_string()))
     }

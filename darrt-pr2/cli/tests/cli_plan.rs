@@ -155,8 +155,8 @@ fn a_budget_that_ends_is_explained() {
     }
     assert!(!complaint.contains("doubtful"), "{complaint}");
     assert!(printed.contains("Every extension ends in one row") && printed.contains("3 extensions"), "{printed}");
-    let begun = ["plate3.partial.html", "plate3.partial.json"];
-    assert_eq!(files(folder.path()), begun, "nothing but the beginning is written without a plan");
+    let written = ["plate3.partial.json", "plate3.why.html"];
+    assert_eq!(files(folder.path()), written, "without a plan its beginning is written, and why it is no more");
 }
 
 /// Interrupted after two seconds; the handler is set within moments.

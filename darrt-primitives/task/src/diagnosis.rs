@@ -9,6 +9,7 @@
 //! | where can the base drive? | `floor` |
 //! | what would make a problem easier? | [`relax`] |
 //! | with which changes has it a plan? | [`explain`] |
+//! | why not in the way that a person has in mind? | [`why_not`] |
 //!
 //! All is bounded by counts and drawn from fixed seeds: the same problem has the same diagnosis. "None of 24" is what was
 //! counted; it is no proof.
@@ -42,6 +43,7 @@ mod floor;
 mod hands;
 mod pushes;
 pub mod relax;
+pub mod why_not;
 
 use cause::{Blocker, Cause, Place, Stage};
 use hands::{Case, Look, Survey, culprit, ranked};

@@ -18,7 +18,8 @@ use darrt_core::problem::{Parts, Problem};
 use darrt_core::sample::{GoalBiased, Guided, Placed};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
-use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
+use darrt_core::record::Recorder;
+use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_recorded};
 use darrt_core::space::{ComponentSpace as _, Place};
 use darrt_core::state::ObjectId;
 use darrt_core::verify::{Refusal, Solution, Verified, Verifier};
@@ -32,10 +33,11 @@ use nalgebra::Isometry3;
 use crate::clock::{NoClock, give_clock};
 use crate::doubts::Outlook;
 use crate::export::{Exporter, Written};
-use crate::plan_file::{PlanFile, PlannerFacts, Pose, SearchName};
+use crate::plan_file::{PlanFile, PlannerFacts, Pose, SearchName, Waypoint};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{CostName, DistanceName, ProblemFile, SamplerName};
 use crate::profile::{Profile, Timed, Times, Watched};
+use crate::recording::{Recording, Tape};
 use crate::registry::Registry;
 use crate::robot::{RobotFacts, TaskRobot};
 use crate::verify::{Proof, VerifyOptions, verify_unless};
@@ -100,6 +102,8 @@ pub struct PlanRequest {
     pub changes: Vec<StrategyChange>,
     /// Places of objects by name that are proposed to the search, as an earlier plan had them.
     pub hints: Vec<BTreeMap<String, Pose>>,
+    /// Keep how the trees grew.
+    pub record: bool,
 }
 
 impl PlanRequest {
@@ -121,6 +125,7 @@ impl PlanRequest {
             cost: CostName::default(),
             changes: Vec::new(),
             hints: Vec::new(),
+            record: false,
         }
     }
 }
@@ -167,6 +172,10 @@ pub struct PlanResult {
     /// Without a plan, the beginning of one, verified: as far towards the goal as the search came with the objects. `None` if
     /// it moved none, or was cancelled.
     pub partial: Option<(PlanFile, Proof)>,
+    /// The state nearest to the goal, by the planner's distance; no way to it need be free.
+    pub nearest: Option<Waypoint>,
+    /// How the trees grew, if that was asked for.
+    pub recording: Option<Recording>,
 }
 
 /// The judge: a plan is exported and the plan file is verified, so that what is accepted is what the user gets. What a file
@@ -361,11 +370,18 @@ pub(crate) fn plan_without_clock<M: TaskRobot>(
     let members: Vec<_> =
         request.algorithms.iter().map(|algorithm| Member { algorithm: *algorithm, strategy }).collect();
     let until = request.improve.map_or(Until::Solved, Until::BudgetEnds);
-    let outcome = solve_with(&prepared.problem, &members, until, &options, observer);
+    let mut tape = request.record.then(Tape::default);
+    let recorder = tape.as_mut().map(|tape| tape as &mut dyn Recorder<Tabletop<M>>);
+    let outcome = solve_recorded(&prepared.problem, &members, until, &options, observer, recorder);
     let is_solved = outcome.solution.is_some();
     let plans = if request.improve.is_some() { observer.plans } else { u64::from(is_solved) };
     let times = watch.times(begun, outcome.elapsed, is_solved);
-    let result = PlanResult { plans, times, ..result(&prepared, request, cost, outcome)? };
+    let recording = tape.map(|tape| {
+        let names = prepared.problem.primitives().iter().map(|part| part.name().to_owned()).collect();
+        let solved = outcome.solution.as_ref().map(|_| outcome.restarts).filter(|_| request.improve.is_none());
+        tape.wound_up(&request.problem, request.seed, names, (outcome.restarts, solved))
+    });
+    let result = PlanResult { plans, times, recording, ..result(&prepared, request, cost, outcome)? };
     Ok((result, prepared.facts))
 }
 
@@ -408,6 +424,8 @@ fn result<M: TaskRobot>(
     let found = found.transpose()?;
     let whole = || (request.seed, facts.clone());
     let partial = outcome.part.as_ref().and_then(|plan| partial::verified(prepared, plan, whole()));
+    let nearest =
+        outcome.nearest.as_ref().map(|state| prepared.exporter.waypoint(m, state, state.mode.gap_m()));
     let judged = outcome.solution.map(Solution::into_parts).and_then(|(plan, verified)| {
         let judged = verified.evidence?.downcast().ok()?;
         Some((plan, Arc::<Judged>::unwrap_or_clone(judged)))
@@ -436,6 +454,8 @@ fn result<M: TaskRobot>(
         times: Times::default(),
         last_refusal: outcome.last_refusal,
         partial,
+        nearest,
+        recording: None,
     })
 }
 

@@ -10,7 +10,8 @@ use crate::args::PlanOptions;
 use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
 use crate::progress::Progress;
-use crate::{diagnosis, drawing, safety, statistics, steps};
+use crate::why_page::{self, Told};
+use crate::{browser, diagnosis, drawing, safety, statistics, steps};
 use darrt_task::diagnosis::Diagnosis;
 use darrt_task::picture::{Extent, Format, Story, Travel};
 use darrt_task::plan_file::PlanFile;
@@ -18,9 +19,11 @@ use darrt_task::planning::{PlanRequest, PlanResult};
 use darrt_task::planning_error::PlanningError;
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
+use darrt_task::recording::Recording;
 use darrt_task::replan::{ReplanRequest, Replanned};
 use darrt_task::robot::{RobotError, RobotFacts};
 use darrt_task::text::counted;
+use darrt_task::viewer::search::SearchData;
 
 /// Plans and reports.
 ///
@@ -33,13 +36,16 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
     let cancel = Cancel::new();
     listen(&cancel);
     let mut progress = Progress::start(&request.problem.name, limit(&request), options.quiet);
-    let (result, kept) = planned(program, options, &request, &cancel, &mut progress)?;
+    let (result, kept) = planned(program, options, (&request, &files), &cancel, &mut progress)?;
     progress.finish();
     if let Some(kept) = kept.filter(|_| !options.quiet) {
         output.print(&kept)?;
     }
     if options.stats {
         output.print(&statistics::report(&result.accounts))?;
+    }
+    if let (Some(path), Some(recording)) = (&files.record, &result.recording) {
+        recording.write(path)?;
     }
     let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else {
         return Err(failed(program, options, (&request, &result), &files, output)?);
@@ -67,9 +73,12 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
         check::notices(plan, output)?;
     }
     // Last: nobody waits for a picture to read the steps.
-    files.draw(plan, &story, &robot)?;
+    files.draw(plan, &story, &robot, result.recording.as_ref())?;
     if !options.quiet {
-        output.print(&files.words())?;
+        output.print(&files.words(options))?;
+    }
+    if let Some((path, _)) = files.picture.as_ref().filter(|_| options.open) {
+        browser::open(path)?;
     }
     Ok(Exit::Solved)
 }
@@ -104,6 +113,7 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
         cost: options.cost.clone().map_or_else(Default::default, Into::into),
         changes: Vec::new(),
         hints: Vec::new(),
+        record: options.record.is_some(),
     }
 }
 
@@ -111,11 +121,11 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
 fn planned(
     program: &dyn Program,
     options: &PlanOptions,
-    request: &PlanRequest,
+    (request, files): (&PlanRequest, &Files),
     cancel: &Cancel,
     progress: &mut Progress,
 ) -> Result<(PlanResult, Option<String>), Failure> {
-    let refused = |error: PlanningError| refused(options, request, &error);
+    let refused = |error: PlanningError| refused(program, options, (request, files), &error);
     let Some(path) = &options.from else {
         return Ok((program.plan(request, cancel, progress).map_err(refused)?, None));
     };
@@ -171,15 +181,32 @@ fn failed(
         why = format!("{why}\n  {}", diagnosis::words::of_partial(plan, &path));
         exit = Exit::Partial;
     }
+    let told = Told { problem: &request.problem, result: Some(result), diagnosis: &diagnosis };
+    if let Some(page) = files.write_why(program, &told)? {
+        why = format!("{why}\n  to see it: {}", page.display());
+        if options.open {
+            browser::open(&page)?;
+        }
+    }
     Ok(Failure::new(exit, format!("{name}: no plan found (seed {}): {why}", request.seed)))
 }
 
-/// The error of a problem that cannot be planned; what keeps a plan away is written down as well.
-fn refused(options: &PlanOptions, request: &PlanRequest, error: &PlanningError) -> Failure {
-    let written = Diagnosis::of_error(&request.problem.name, error).map(|diagnosis| write_why(options, &diagnosis));
+/// The error of a problem that cannot be planned; what keeps a plan away is written down as well, and drawn.
+fn refused(
+    program: &dyn Program,
+    options: &PlanOptions,
+    (request, files): (&PlanRequest, &Files),
+    error: &PlanningError,
+) -> Failure {
+    let message = located(&options.problem, &error.to_string());
+    let Some(diagnosis) = Diagnosis::of_error(&request.problem.name, error) else { return Failure::input(message) };
+    let written = write_why(options, &diagnosis).and_then(|()| {
+        files.write_why(program, &Told { problem: &request.problem, result: None, diagnosis: &diagnosis })
+    });
     match written {
-        Some(Err(failure)) => failure,
-        _ => Failure::input(located(&options.problem, &error.to_string())),
+        Err(failure) => failure,
+        Ok(Some(page)) => Failure::input(format!("{message}; to see it: {}", page.display())),
+        Ok(None) => Failure::input(message),
     }
 }
 
@@ -235,6 +262,7 @@ fn improvement(result: &PlanResult, story: &Story, robot: &RobotFacts) -> Result
 struct Files {
     plan: PathBuf,
     picture: Option<(PathBuf, Format)>,
+    record: Option<PathBuf>,
 }
 
 impl Files {
@@ -254,55 +282,89 @@ impl Files {
             Some(path) => Some((output::writable(&path)?, Format::of_path(&path)?)),
             None => None,
         };
+        let record = options.record.as_deref().map(output::writable).transpose()?;
         let is_problem = |path: &Path| asked.exists() && output::is_same_file(asked, path);
-        if let Some(path) =
-            [Some(&plan), picture.as_ref().map(|(path, _)| path)].into_iter().flatten().find(|p| is_problem(p))
-        {
+        let all = [Some(&plan), picture.as_ref().map(|(path, _)| path), record.as_ref()];
+        if let Some(path) = all.into_iter().flatten().find(|path| is_problem(path)) {
             return Err(Failure::input(format!("{}: is the problem file itself, it would be lost", path.display())));
         }
         if picture.as_ref().is_some_and(|(path, _)| output::is_same_file(path, &plan)) {
             let text = format!("{}: cannot be both the plan and the picture", plan.display());
             return Err(Failure::input(text));
         }
-        Ok(Self { plan, picture })
+        if let Some(path) = &record
+            && [Some(&plan), picture.as_ref().map(|(path, _)| path)]
+                .into_iter()
+                .flatten()
+                .any(|other| output::is_same_file(path, other))
+        {
+            let text = format!("{}: cannot be both the recorded search and the plan or picture", path.display());
+            return Err(Failure::input(text));
+        }
+        Ok(Self { plan, picture, record })
     }
 
-    fn draw(&self, plan: &PlanFile, story: &Story, robot: &RobotFacts) -> Result<(), Failure> {
+    fn draw(
+        &self,
+        plan: &PlanFile,
+        story: &Story,
+        robot: &RobotFacts,
+        recording: Option<&Recording>,
+    ) -> Result<(), Failure> {
         match &self.picture {
+            Some((path, Format::Html)) => {
+                let search = recording.map(SearchData::of);
+                let page = drawing::page(story, Some(plan), robot, (Extent::Whole, None, search))?;
+                output::write_file(path, page)
+            }
             Some((path, format)) => {
-                output::write_file(path, &drawing::file(story, Some(plan), robot, *format, Extent::Whole)?)
+                output::write_file(path, drawing::file(story, Some(plan), robot, *format, Extent::Whole)?)
             }
             None => Ok(()),
         }
     }
 
+    /// Writes the page that tells why there is no plan, unless no page is wanted; says where.
+    fn write_why(&self, program: &dyn Program, told: &Told<'_>) -> Result<Option<PathBuf>, Failure> {
+        let Some((picture, Format::Html)) = &self.picture else { return Ok(None) };
+        let path = with_mark(picture, "why");
+        output::write_file(&path, why_page::page(program, told)?)?;
+        Ok(Some(path))
+    }
+
     /// Writes the beginning of a plan beside where the plan would be, and its picture; says where.
     fn write_partial(&self, program: &dyn Program, plan: &PlanFile) -> Result<PathBuf, Failure> {
         let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
-        let path = of_partial(&self.plan);
-        let picture = self.picture.as_ref().map(|(picture, format)| (of_partial(picture), *format));
+        let path = with_mark(&self.plan, "partial");
         plan.write(&path)?;
-        let files = Self { plan: path.clone(), picture };
-        files.draw(plan, &Story::of_plan(plan, &robot)?, &robot)?;
+        // A page tells why there is no plan as well, and is written then.
+        let picture = self.picture.as_ref().filter(|(_, format)| *format != Format::Html);
+        let picture = picture.map(|(picture, format)| (with_mark(picture, "partial"), *format));
+        let files = Self { plan: path.clone(), picture, record: None };
+        files.draw(plan, &Story::of_plan(plan, &robot)?, &robot, None)?;
         Ok(path)
     }
 
-    fn words(&self) -> String {
-        let plan = format!("plan:     {}", self.plan.display());
-        match &self.picture {
-            Some((path, _)) => format!("{plan}\npicture:  {}", path.display()),
-            None => plan,
+    fn words(&self, options: &PlanOptions) -> String {
+        let mut words = format!("plan:     {}", self.plan.display());
+        if let Some((path, _)) = &self.picture {
+            words.push_str(&format!("\npicture:  {}", path.display()));
         }
+        if let Some(path) = &options.record {
+            words.push_str(&format!("\nsearch:   {}", path.display()));
+        }
+        words
     }
 }
 
-/// Where the beginning of a plan goes that would be written to `path`: `a/b.plan.json` and `a/b.json` have
-/// `a/b.partial.json`. What an earlier run wrote there stays.
-fn of_partial(path: &Path) -> PathBuf {
+/// Where something else goes than the plan that would be written to `path`: with the mark `partial`, `a/b.plan.json` and
+/// `a/b.json` have `a/b.partial.json`. What an earlier run wrote there stays.
+fn with_mark(path: &Path, mark: &str) -> PathBuf {
     let bare = path.with_extension("");
     let bare = if bare.extension().is_some_and(|ending| ending == "plan") { bare.with_extension("") } else { bare };
     let mut name = bare.into_os_string();
-    name.push(".partial");
+    name.push(".");
+    name.push(mark);
     if let Some(ending) = path.extension() {
         name.push(".");
         name.push(ending);
@@ -343,7 +405,7 @@ mod tests {
             ("a.b/p", "a.b/p.partial"),
             ("p.html", "p.partial.html"),
         ] {
-            assert_eq!(of_partial(Path::new(plan)), Path::new(partial));
+            assert_eq!(with_mark(Path::new(plan), "partial"), Path::new(partial));
         }
     }
 

@@ -289,6 +289,30 @@ impl Cause {
         }
     }
 
+    /// All bodies that it names, the object that it is about first, each once.
+    pub fn bodies(&self) -> Vec<String> {
+        let of = |blockers: &[Blocker]| blockers.iter().map(|blocker| blocker.body.clone()).collect::<Vec<_>>();
+        let others = match self {
+            Self::GoalOccupied { by, .. } => vec![by.clone()],
+            Self::NoHand { hands } => of(&hands.blockers),
+            Self::NoCommonGrasp { blockers, .. } | Self::NoRobotGoal { blockers, .. } => of(blockers),
+            Self::NoPush { pushes, edges } => {
+                let at_edges = edges.iter().flat_map(|edge| of(&edge.hands.blockers));
+                of(&pushes.blockers).into_iter().chain(at_edges).collect()
+            }
+            Self::CutOff { floor, .. } => of(&floor.walls),
+            Self::Behind { others, .. } => of(others),
+            _ => Vec::new(),
+        };
+        let mut all: Vec<String> = Vec::new();
+        for body in self.object().map(str::to_owned).into_iter().chain(others) {
+            if !all.contains(&body) {
+                all.push(body);
+            }
+        }
+        all
+    }
+
     /// The object that it is about.
     pub fn object(&self) -> Option<&str> {
         match self {
