@@ -508,6 +508,9 @@ pub struct BenchOptions {
     /// Write a page with curves and tables here, .html
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+    /// Keep the plan of every run, and a page of it, in this folder; the report links to them
+    #[arg(long, value_name = "FOLDER")]
+    pub keep: Option<PathBuf>,
     /// Write a log for `ompl_benchmark_statistics` per problem into this folder
     #[arg(long, value_name = "FOLDER")]
     pub ompl: Option<PathBuf>,

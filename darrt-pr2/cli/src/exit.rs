@@ -86,7 +86,7 @@ impl From<ViewerError> for Failure {
 impl From<BenchError> for Failure {
     fn from(error: BenchError) -> Self {
         let exit = match error {
-            BenchError::Unwritable { .. } | BenchError::Locked { .. } => Exit::CannotWrite,
+            BenchError::Unwritable { .. } | BenchError::Locked { .. } | BenchError::Kept { .. } => Exit::CannotWrite,
             _ => Exit::BadInput,
         };
         Self::new(exit, on_one_line(&error.to_string()))

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use darrt_core::budget::{Cancel, Stop};
+use darrt_core::search::Algorithm;
 
 use super::check;
 use crate::args::PlanOptions;
@@ -31,6 +32,7 @@ use darrt_task::viewer::search::SearchData;
 /// Every end but a verified plan that is written, with its exit code.
 pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
     let problem = options.safety.applied(opened(program, options, output)?, &options.problem)?;
+    check_recorded(options)?;
     let files = Files::choose(options)?;
     let request = request(options, problem);
     let cancel = Cancel::new();
@@ -94,6 +96,17 @@ fn opened(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> 
         changes.iter().try_for_each(|change| output.print(&format!("{}: {change}", problem.name)))?;
     }
     Ok(problem)
+}
+
+/// Searches whose trees are not of the whole problem are not recorded.
+fn check_recorded(options: &PlanOptions) -> Result<(), Failure> {
+    let whole = [Algorithm::Darrt, Algorithm::Connect];
+    match options.search.algorithms().iter().find(|algorithm| !whole.contains(algorithm)) {
+        Some(other) if options.record.is_some() => Err(Failure::input(format!(
+            "--record: the search `{other}` has no tree of the whole problem; choose --search darrt or connect"
+        ))),
+        _ => Ok(()),
+    }
 }
 
 fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {

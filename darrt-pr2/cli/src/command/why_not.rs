@@ -11,6 +11,7 @@ use darrt_task::planning::PlanRequest;
 use darrt_task::program::Program;
 use darrt_task::replan::ReplanRequest;
 use darrt_task::text::{counted, on_one_line};
+use darrt_task::verify::{VerifyOptions, verify_with};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
 use super::{check, plan};
@@ -70,26 +71,23 @@ fn of_plan(program: &dyn Program, options: &WhyNotOptions, output: &mut Output) 
     request.iterations = Some(options.iterations);
     let of = from.steps.len();
     let remains = diagnosis::words::of_parts(from.partial.as_ref());
-    let whole = ReplanRequest { plan: request.clone(), from, keep: None };
     let cancel = Cancel::new();
     plan::listen(&cancel);
     let failed = |error: darrt_task::planning_error::PlanningError| {
         Failure::input(on_one_line(&format!("{}: {error}", options.source)))
     };
-    let replanned = program.replan(&whole, &cancel, &mut Silent).map_err(failed)?;
+    let facts = program.facts(&from.problem).map_err(|error| Failure::input(error.to_string()))?;
     let mut lines = Vec::new();
-    match &replanned.refused {
-        // What is left to do is no fault of a beginning.
-        Some(_) if is_partial && replanned.kept == of => {
-            lines.push(format!("all {} are right; {remains}", counted(of as u64, "step")));
-        }
-        Some(why) => lines.push(format!("wrong first: {why}")),
-        None if is_partial => lines.push(format!("all {} are right; {remains}", counted(of as u64, "step"))),
-        None => {
+    match verify_with(&from, &facts, &VerifyOptions::default()) {
+        Err(refusal) => lines.push(format!("wrong first: {refusal}")),
+        Ok(_) if is_partial => lines.push(format!("its {} are right; {remains}", counted(of as u64, "step"))),
+        Ok(_) => {
             output.print(&format!("{}: nothing is wrong with it", options.source))?;
             return Ok(Exit::Solved);
         }
     }
+    let whole = ReplanRequest { plan: request.clone(), from, keep: None };
+    let replanned = program.replan(&whole, &cancel, &mut Silent).map_err(failed)?;
     let kept = match replanned.kept {
         0 => "planned anew".to_owned(),
         kept => format!("with the first {} kept", counted(kept as u64, "step")),
@@ -155,7 +153,7 @@ fn metres(metres: f64) -> String {
 fn of_fault(fault: &Fault) -> String {
     let Fault { wrong, names, by, is_angle, bases } = fault;
     let both = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
-    let amount = by.map(|by| if *is_angle { format!("{:.2} rad", by) } else { metres(by) });
+    let amount = by.map(|by| if *is_angle { format!("{:.1} degrees", by.to_degrees()) } else { metres(by) });
     let deep = amount.as_ref().map_or_else(
         || "are nearer to each other than their margin, or touch".to_owned(),
         |amount| format!("overlap by {amount}"),

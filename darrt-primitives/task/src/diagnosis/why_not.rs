@@ -14,6 +14,7 @@ use darrt_geom::scene::Scene;
 use darrt_geom::{Body, clearance};
 use darrt_primitives::action::stance::Probe;
 use darrt_primitives::grasp::{Grasp, GraspFamily};
+use darrt_primitives::kinematics::urdf::JointKind;
 use darrt_primitives::manipulator::{Configuration, JointVector as _, Manipulator};
 use darrt_primitives::mode::Contacts;
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
@@ -174,10 +175,14 @@ pub enum WhyNotError {
 pub fn why_not<M: TaskRobot>(registry: &Registry<M>, request: &WhyNotRequest) -> Result<WhyNot, WhyNotError> {
     let file = &request.problem;
     let (robot, arm) = M::build(&file.robot).map_err(PlanningError::from)?;
-    let names = M::facts(&file.robot).map_err(PlanningError::from)?.arm_joints;
+    let facts = M::facts(&file.robot).map_err(PlanningError::from)?;
+    let slides = |name: &String| {
+        facts.description.joints.iter().any(|joint| *joint.name == **name && joint.kind == JointKind::Sliding)
+    };
+    let joints: Vec<_> = facts.arm_joints.iter().map(|name| (name.clone(), slides(name))).collect();
     let Built { world, start, goal, scene, .. } = world::build_with(registry, file, robot, arm)?;
     let look = Look { m: &world, start: &start, goal: &goal, is_quick: true };
-    let asked = Asked { look, scene: &scene, names: &names };
+    let asked = Asked { look, scene: &scene, joints: &joints };
     let (fault, variant) = match &request.idea {
         Idea::State { base, joints } => {
             let arm = match joints {
@@ -205,7 +210,8 @@ pub fn why_not<M: TaskRobot>(registry: &Registry<M>, request: &WhyNotRequest) ->
 struct Asked<'a, M: Manipulator> {
     look: Look<'a, M>,
     scene: &'a Scene,
-    names: &'a [String],
+    /// The joints of the arm by name; do they slide?
+    joints: &'a [(String, bool)],
 }
 
 impl<M: Manipulator> Asked<'_, M> {
@@ -229,8 +235,8 @@ impl<M: Manipulator> Asked<'_, M> {
         if let Some((joint, value)) = m.robot().first_outside(&q.arm) {
             let limit = m.robot().limits().get(joint);
             let by = limit.map(|limit| (limit.lower - value).max(value - limit.upper));
-            let names = self.names.get(joint).cloned().into_iter().collect();
-            return Some(Fault { wrong: Wrong::Limit, names, by, is_angle: true, bases: 0 });
+            let (name, slides) = self.joints.get(joint).cloned().unwrap_or_default();
+            return Some(Fault { wrong: Wrong::Limit, names: vec![name], by, is_angle: !slides, bases: 0 });
         }
         if !m.robot().base().contains(&q.base) {
             let space = m.robot().base().position();
@@ -436,7 +442,19 @@ impl<M: Manipulator> Asked<'_, M> {
         }
         // The sort is stable: of equally near ones the first stays the first.
         variants.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(Ordering::Equal));
-        variants.iter().skip(1).find_map(|(_, pose)| self.reached(pose).ok())
+        let (pose, found) =
+            variants.iter().skip(1).find_map(|(_, pose)| Some((*pose, self.reached(pose).ok()?)))?;
+        // Back towards what was asked about, as far as it is right.
+        let mut best = found;
+        let (mut wrong, mut right) = (0.0, 1.0);
+        for _ in 0..BISECTIONS {
+            let middle = f64::midpoint(wrong, right);
+            match self.reached(&tool.lerp_slerp(&pose, middle)) {
+                Ok(q) => (best, right) = (q, middle),
+                Err(_) => wrong = middle,
+            }
+        }
+        Some(best)
     }
 
     // ------------------------------------------------------------ a grasp
