@@ -1,6 +1,6 @@
 //! What a run leaves behind to look at: why there is no plan, how the search went, and what is wrong with an idea.
 
-#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test stops at the first surprise, and says what it skips")]
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -280,4 +280,31 @@ fn the_report_of_a_benchmark_leads_to_the_plans_that_were_kept() {
         let plan = kept.with_extension("plan.json");
         assert_eq!(darrt(folder.path(), &["check", plan.to_str().unwrap()]).status.code(), Some(0));
     }
+}
+
+#[test]
+fn a_browser_shows_the_causes_without_a_complaint() {
+    let is_there = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
+    let Some(browser) = ["chromium", "chromium-browser", "google-chrome"].into_iter().find(is_there) else {
+        eprintln!("skipped: this machine has no Chromium");
+        return;
+    };
+    let profile = tempfile::tempdir().unwrap();
+    let output = Command::new(browser)
+        .args(["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
+        .args(["--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run"])
+        .args(["--host-resolver-rules=MAP * ~NOTFOUND", "--enable-logging=stderr", "--dump-dom"])
+        .arg(format!("--user-data-dir={}", profile.path().display()))
+        .arg("--virtual-time-budget=3000")
+        .arg(format!("file://{}", failed().join("caged.why.html").display()))
+        .output()
+        .unwrap();
+    let said = text(&output.stderr);
+    let complaints: Vec<&str> = said.lines().filter(|line| line.contains("CONSOLE")).collect();
+    assert!(complaints.is_empty(), "{complaints:?}");
+    let page = text(&output.stdout);
+    let list = |id: &str| page.split_once(&format!("id=\"{id}\">")).map(|(_, rest)| rest).unwrap();
+    let causes = list("causes").split("</ul>").next().unwrap();
+    assert!(causes.contains("aria-pressed=\"false\"") && causes.contains("`mug`"), "{causes}");
+    assert!(list("heat").contains("post") && list("grown").starts_with("iteration 600 of 600"));
 }

@@ -46,9 +46,6 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
     if options.stats {
         output.print(&statistics::report(&result.accounts))?;
     }
-    if let (Some(path), Some(recording)) = (&files.record, &result.recording) {
-        recording.write(path)?;
-    }
     let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else {
         return Err(failed(program, options, (&request, &result), &files, output)?);
     };
@@ -75,6 +72,7 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
         check::notices(plan, output)?;
     }
     // Last: nobody waits for a picture to read the steps.
+    files.keep(&result)?;
     files.draw(plan, &story, &robot, result.recording.as_ref())?;
     if !options.quiet {
         output.print(&files.words(options))?;
@@ -195,10 +193,21 @@ fn failed(
         exit = Exit::Partial;
     }
     let told = Told { problem: &request.problem, result: Some(result), diagnosis: &diagnosis };
-    if let Some(page) = files.write_why(program, &told)? {
-        why = format!("{why}\n  to see it: {}", page.display());
-        if options.open {
-            browser::open(&page)?;
+    // What cannot be written or opened must not hide why there is no plan.
+    // Who interrupts does not wait for a page.
+    let is_wanted = exit != Exit::Interrupted;
+    let page = || if is_wanted { files.write_why(program, &told) } else { Ok(None) };
+    match files.keep(result).and_then(|()| page()) {
+        Ok(None) => {}
+        Ok(Some(page)) => {
+            why = format!("{why}\n  to see it: {}", page.display());
+            if let Err(failure) = if options.open { browser::open(&page) } else { Ok(()) } {
+                why = format!("{why}\n  {}", failure.message);
+            }
+        }
+        Err(failure) => {
+            why = format!("{why}\n  {}", failure.message);
+            exit = failure.exit;
         }
     }
     Ok(Failure::new(exit, format!("{name}: no plan found (seed {}): {why}", request.seed)))
@@ -213,11 +222,12 @@ fn refused(
 ) -> Failure {
     let message = located(&options.problem, &error.to_string());
     let Some(diagnosis) = Diagnosis::of_error(&request.problem.name, error) else { return Failure::input(message) };
-    let written = write_why(options, &diagnosis).and_then(|()| {
-        files.write_why(program, &Told { problem: &request.problem, result: None, diagnosis: &diagnosis })
-    });
-    match written {
-        Err(failure) => failure,
+    if let Err(failure) = write_why(options, &diagnosis) {
+        return failure;
+    }
+    let told = Told { problem: &request.problem, result: None, diagnosis: &diagnosis };
+    match files.write_why(program, &told) {
+        Err(failure) => Failure::input(format!("{message}; {}", failure.message)),
         Ok(Some(page)) => Failure::input(format!("{message}; to see it: {}", page.display())),
         Ok(None) => Failure::input(message),
     }
@@ -334,6 +344,14 @@ impl Files {
                 output::write_file(path, drawing::file(story, Some(plan), robot, *format, Extent::Whole)?)
             }
             None => Ok(()),
+        }
+    }
+
+    /// Writes the recorded search, if there is one.
+    fn keep(&self, result: &PlanResult) -> Result<(), Failure> {
+        match (&self.record, &result.recording) {
+            (Some(path), Some(recording)) => Ok(recording.write(path)?),
+            _ => Ok(()),
         }
     }
 

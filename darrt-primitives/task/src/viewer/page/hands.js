@@ -99,7 +99,7 @@ function listen() {
     0: () => look('all'), 1: () => look('top'), 2: () => look('side'), 3: () => look('hand') };
   const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
   document.addEventListener('keydown', event => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches('select, summary')) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches('select, summary, #iteration')) return;
     const arrow = arrows[event.key];
     if (arrow && event.target === scene) (event.shiftKey ? () => shift(-arrow[0] * 0.05, -arrow[1] * 0.05) : () => turnView(-arrow[0] * 0.08, -arrow[1] * 0.08))();
     // Elsewhere arrows go from waypoint to waypoint, also on the slider, whose own steps are of no use.
