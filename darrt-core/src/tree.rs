@@ -108,7 +108,8 @@ impl<D: Domain> Tree<D> {
     /// The tree that holds only the start.
     pub fn rooted_at(m: &D, start: State<D>) -> Self {
         let mirrors = Some(Mirrors::new(m, &start.robot));
-        let mut tree = Self { nodes: Vec::new(), placements: Vec::new(), penalties_m: Vec::new(), mirrors, births: None };
+        let mut tree =
+            Self { nodes: Vec::new(), placements: Vec::new(), penalties_m: Vec::new(), mirrors, births: None };
         tree.open_placement();
         tree.push(m, start, None, 0);
         tree

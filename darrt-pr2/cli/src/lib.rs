@@ -76,7 +76,9 @@ pub fn run(program: &dyn Program, arguments: impl IntoIterator<Item = OsString>)
 }
 
 fn dispatch(program: &dyn Program, command: &Command) -> Result<Exit, Failure> {
-    use crate::command::{bench, check, execute, explain, export, generate, plan, problems, robot, schema, show, why_not};
+    use crate::command::{
+        bench, check, execute, explain, export, generate, plan, problems, robot, schema, show, why_not,
+    };
     let mut output = Output::stdout();
     match command {
         Command::Plan(options) => plan::run(program, options, &mut output),

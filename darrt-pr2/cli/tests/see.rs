@@ -1,6 +1,10 @@
 //! What a run leaves behind to look at: why there is no plan, how the search went, and what is wrong with an idea.
 
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test stops at the first surprise, and says what it skips")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "a test stops at the first surprise, and says what it skips"
+)]
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -19,7 +23,9 @@ fn caged() -> String {
     };
     let mug = |name: &str, y: f64| {
         let shape = "{ cylinder = { radius = 0.035, height = 0.10 } }";
-        format!("[[object]]\nname = \"{name}\"\nshape = {shape}\non = \"table\"\nat = [-0.2, {y}]\ngrasps = [\"side\"]\n")
+        format!(
+            "[[object]]\nname = \"{name}\"\nshape = {shape}\non = \"table\"\nat = [-0.2, {y}]\ngrasps = [\"side\"]\n"
+        )
     };
     let goal = |name: &str, y: f64| format!("[[goal.object]]\nobject = \"{name}\"\non = \"table\"\nat = [-0.2, {y}]\n");
     format!(
@@ -50,7 +56,8 @@ fn failed() -> &'static Path {
         .get_or_init(|| {
             let folder = tempfile::tempdir().unwrap();
             std::fs::write(folder.path().join("caged.toml"), caged()).unwrap();
-            let run = darrt(folder.path(), &["plan", "caged.toml", "--iterations", "600", "--record", "caged.search.json"]);
+            let run =
+                darrt(folder.path(), &["plan", "caged.toml", "--iterations", "600", "--record", "caged.search.json"]);
             let complaint = text(&run.stderr);
             assert_eq!(run.status.code(), Some(5), "{complaint}");
             assert!(complaint.contains("caged.why.html") && complaint.contains("caged.partial.json"), "{complaint}");
@@ -163,21 +170,22 @@ fn the_same_search_has_the_same_recording_on_any_number_of_threads_and_the_same_
 
 #[test]
 fn bad_recordings_and_options_are_refused_with_the_place() {
-    let whole = std::fs::read_to_string(failed().join("caged.search.json")).unwrap();
-    let mut json: serde_json::Value = serde_json::from_str(&whole).unwrap();
-    let refused = |json: &serde_json::Value| {
-        std::fs::write(failed().join("bad.json"), json.to_string()).unwrap();
+    let mut recording = Recording::read(&failed().join("caged.search.json")).unwrap();
+    let refused = |recording: &Recording| {
+        recording.write(&failed().join("bad.json")).unwrap();
         let shown = darrt(failed(), &["show", "bad.json", "-o", "bad.dot"]);
         assert_eq!(shown.status.code(), Some(2));
         text(&shown.stderr)
     };
-    json["attempts"][0]["nodes"][5][0] = 5.into();
-    assert!(refused(&json).contains("`attempts[0].nodes[5][0]` is 5, must be below 5"));
-    json["attempts"][0]["nodes"][5][0] = 4.into();
-    json["attempts"][0]["blocked"][0][2] = 100_000.into();
-    assert!(refused(&json).contains("`attempts[0].blocked[0][2]` is 100000"));
-    json["version"] = 2.into();
-    assert!(refused(&json).contains("version 2"));
+    recording.attempts[0].nodes[5].0 = Some(5);
+    let complaint = refused(&recording);
+    assert!(complaint.contains("`attempts[0].nodes[5][0]` is 5, must be below 5"), "{complaint}");
+    recording.attempts[0].nodes[5].0 = Some(4);
+    recording.attempts[0].blocked[0].2 = 100_000;
+    let complaint = refused(&recording);
+    assert!(complaint.contains("`attempts[0].blocked[0][2]` is 100000"), "{complaint}");
+    recording.version = 2;
+    assert!(refused(&recording).contains("version 2"));
     for (arguments, words) in [
         (vec!["show", "caged.search.json", "-o", "tree.svg"], ".graphml"),
         (vec!["show", "caged.search.json", "--attempt", "7", "-o", "tree.dot"], "there are 0"),
@@ -284,7 +292,8 @@ fn the_report_of_a_benchmark_leads_to_the_plans_that_were_kept() {
 
 #[test]
 fn a_browser_shows_the_causes_without_a_complaint() {
-    let is_there = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
+    let is_there =
+        |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
     let Some(browser) = ["chromium", "chromium-browser", "google-chrome"].into_iter().find(is_there) else {
         eprintln!("skipped: this machine has no Chromium");
         return;

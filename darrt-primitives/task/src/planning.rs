@@ -15,10 +15,10 @@ use darrt_core::observe::{Event, Observer};
 use darrt_core::partial::PartialState;
 use darrt_core::plan::Plan;
 use darrt_core::problem::{Parts, Problem};
+use darrt_core::record::Recorder;
 use darrt_core::sample::{GoalBiased, Guided, Placed};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
-use darrt_core::record::Recorder;
 use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_recorded};
 use darrt_core::space::{ComponentSpace as _, Place};
 use darrt_core::state::ObjectId;
@@ -424,8 +424,7 @@ fn result<M: TaskRobot>(
     let found = found.transpose()?;
     let whole = || (request.seed, facts.clone());
     let partial = outcome.part.as_ref().and_then(|plan| partial::verified(prepared, plan, whole()));
-    let nearest =
-        outcome.nearest.as_ref().map(|state| prepared.exporter.waypoint(m, state, state.mode.gap_m()));
+    let nearest = outcome.nearest.as_ref().map(|state| prepared.exporter.waypoint(m, state, state.mode.gap_m()));
     let judged = outcome.solution.map(Solution::into_parts).and_then(|(plan, verified)| {
         let judged = verified.evidence?.downcast().ok()?;
         Some((plan, Arc::<Judged>::unwrap_or_clone(judged)))

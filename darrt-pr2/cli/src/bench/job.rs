@@ -75,8 +75,7 @@ impl JobSet {
         time_limit: Option<Duration>,
         iterations: Option<u64>,
     ) -> Result<Self, BenchError> {
-        let mut set =
-            Self { subjects: Vec::new(), variants: Vec::new(), seeds, time_limit, iterations, keep: None };
+        let mut set = Self { subjects: Vec::new(), variants: Vec::new(), seeds, time_limit, iterations, keep: None };
         for subject in subjects {
             match set.subjects.iter().find(|other| other.problem.name == subject.problem.name) {
                 Some(other) if other.digest == subject.digest => {}

@@ -12,7 +12,9 @@ use crate::bench::record::{Key, Record};
 use crate::bench::run as workers;
 use crate::bench::statistics::summaries;
 use crate::bench::variant::VARIANTS;
-use crate::bench::{BenchError, Collection, Job, JobSet, Journal, Shard, Subject, Variant, journal, kept, ompl_log, report};
+use crate::bench::{
+    BenchError, Collection, Job, JobSet, Journal, Shard, Subject, Variant, journal, kept, ompl_log, report,
+};
 use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
 use crate::progress::Bar;

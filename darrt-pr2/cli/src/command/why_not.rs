@@ -48,8 +48,7 @@ pub(crate) fn run(program: &dyn Program, options: &WhyNotOptions, output: &mut O
         (_, base, joints) => Idea::State { base, joints: joints.clone() },
     };
     let request = WhyNotRequest { problem: program.open(&options.source)?, idea };
-    let answer =
-        program.why_not(&request).map_err(|error| Failure::input(format!("{}: {error}", options.source)))?;
+    let answer = program.why_not(&request).map_err(|error| Failure::input(format!("{}: {error}", options.source)))?;
     if options.json {
         let text = serde_json::to_string_pretty(&answer);
         output.print(&text.map_err(|error| Failure::new(Exit::CannotWrite, error.to_string()))?)?;
@@ -168,10 +167,9 @@ fn of_fault(fault: &Fault) -> String {
         Wrong::Base => format!("the base cannot stand there: {both} {deep}{from}"),
         Wrong::Robot => format!("{both} {deep}{from}"),
         Wrong::Hand => format!("the hand alone, without an arm: {both} {deep}"),
-        Wrong::Grasp => format!(
-            "it is no grasp of {both}: the nearest one that holds is {} away",
-            amount.unwrap_or_default()
-        ),
+        Wrong::Grasp => {
+            format!("it is no grasp of {both}: the nearest one that holds is {} away", amount.unwrap_or_default())
+        }
         Wrong::Reach => format!("the arm reaches it from none of {} tried", counted(*bases, "base")),
         Wrong::Pick(stage) => {
             let object = names.first().map_or_else(String::new, |name| format!("`{name}`"));

@@ -259,12 +259,7 @@ impl<M: Manipulator> Asked<'_, M> {
     }
 
     /// A body by its name, and where it is.
-    fn body(
-        &self,
-        name: &str,
-        links: &[Isometry3<f64>],
-        state: &TabletopState<M>,
-    ) -> Option<(&Body, Isometry3<f64>)> {
+    fn body(&self, name: &str, links: &[Isometry3<f64>], state: &TabletopState<M>) -> Option<(&Body, Isometry3<f64>)> {
         let m = self.m();
         let link = m.manipulator().links().iter().zip(links).find(|(link, _)| *link.body.name == *name);
         let object = || m.movables().iter().zip(&state.objects).find(|(movable, _)| *movable.body.name == *name);

@@ -40,6 +40,8 @@ impl Tape {
         (last, solved): (u64, Option<u64>),
     ) -> Recording {
         let reels = self.reels.into_values().map(|reel| reel.kept);
+        let mut attempts: Vec<_> = reels.filter(|kept| kept.attempt <= last).collect();
+        let bodies = renumbered(&self.bodies, &mut attempts);
         Recording {
             format: RecordingFormat::DarrtRecording,
             version: VERSION,
@@ -47,9 +49,9 @@ impl Tape {
             seed,
             solved,
             primitives,
-            bodies: self.bodies,
+            bodies,
             left_out: self.left_out,
-            attempts: reels.filter(|kept| kept.attempt <= last).collect(),
+            attempts,
         }
     }
 
@@ -73,6 +75,24 @@ impl Tape {
         }
         has_room
     }
+}
+
+/// Numbers the bodies in the order in which the attempts, one after the other, name them: which thread named one first does not
+/// matter then.
+fn renumbered(names: &[String], attempts: &mut [Attempt]) -> Vec<String> {
+    let mut new = BTreeMap::<u32, u32>::new();
+    let mut order = Vec::new();
+    for Blocked(_, _, first, second) in attempts.iter_mut().flat_map(|attempt| &mut attempt.blocked) {
+        for body in [first, second] {
+            let next = u32::try_from(order.len()).unwrap_or(u32::MAX);
+            let index = *new.entry(*body).or_insert(next);
+            if index == next {
+                order.push(names.get(*body as usize).cloned().unwrap_or_default());
+            }
+            *body = index;
+        }
+    }
+    order
 }
 
 impl Reel {
@@ -103,13 +123,7 @@ fn moved<M: TaskRobot>(state: &TabletopState<M>, before: Option<&TabletopState<M
 }
 
 impl<M: TaskRobot> Recorder<Tabletop<M>> for Tape {
-    fn on_growth(
-        &mut self,
-        attempt: u64,
-        iteration: u64,
-        growth: &Growth<'_, Tabletop<M>>,
-        blame: Option<&Blame>,
-    ) {
+    fn on_growth(&mut self, attempt: u64, iteration: u64, growth: &Growth<'_, Tabletop<M>>, blame: Option<&Blame>) {
         let (tree, births) = (growth.tree, growth.tree.births());
         let mut reel = self.reels.remove(&attempt).unwrap_or_else(|| Reel {
             kept: Attempt { attempt, iterations: 0, nodes: Vec::new(), removed: Vec::new(), blocked: Vec::new() },

@@ -100,8 +100,7 @@ impl<M: Manipulator> Asked<'_, M> {
         }
         // The sort is stable: of equally near ones the first stays the first.
         variants.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(Ordering::Equal));
-        let (pose, found) =
-            variants.iter().skip(1).find_map(|(_, pose)| Some((*pose, self.reached(pose).ok()?)))?;
+        let (pose, found) = variants.iter().skip(1).find_map(|(_, pose)| Some((*pose, self.reached(pose).ok()?)))?;
         // Back towards what was asked about, as far as it is right.
         let mut best = found;
         let (mut wrong, mut right) = (0.0, 1.0);
