@@ -151,6 +151,7 @@ impl<D: Domain> fmt::Debug for Outcome<D> {
             .field("nodes", &self.nodes)
             .field("restarts", &self.restarts)
             .field("nearest_to_goal", &self.nearest_to_goal)
+            .field("nearest", &self.nearest)
             .field("elapsed", &self.elapsed)
             .field("last_refusal", &self.last_refusal)
             .field("part", &self.part)
