@@ -246,6 +246,9 @@ pub struct ExecuteOptions {
     /// Errors of the world and the robot: a part of those of a real robot, 0 to 1, or a file
     #[arg(long, value_name = "FILE|0..1", default_value = "0", allow_hyphen_values = true)]
     pub noise: String,
+    /// Close the loop: look before every contact and after every drive, correct the arm, plan anew where that is not enough
+    #[arg(long)]
+    pub replan: bool,
     /// How often [default: once without noise, else 100 times]
     #[arg(long, value_name = "NUMBER", value_parser = run_count, allow_hyphen_values = true)]
     pub runs: Option<u64>,

@@ -7,17 +7,26 @@
 //! | what may be off? | [`noise`] |
 //! | what went wrong first? | [`watch`] |
 //! | is it where it should be? | [`goal`] |
-//! | when is the robot where? | `timeline` |
+//! | when is the robot where? | `course`, `timeline` |
+//! | what happens in one execution? | `performance` |
+//! | what does the robot know of where everything is? | `belief`, `progress` |
+//! | what does it do about it? | `feedback`, `arm` |
 //! | what is the world made of? | `stage`, `solids`, `robot`, `fingers` |
 //!
 //! Metres, kilograms, seconds, radians; the floor is z = 0, z up. The engine is rapier; its types stay inside.
 
+mod arm;
+mod belief;
+mod course;
 pub mod error;
+mod feedback;
 mod fingers;
 pub mod goal;
 #[cfg(test)]
 mod known_cases;
 pub mod noise;
+mod performance;
+mod progress;
 mod robot;
 pub mod run;
 pub mod runs;
@@ -28,6 +37,6 @@ pub mod watch;
 
 pub use error::ExecuteError;
 pub use noise::{NoiseError, NoiseModel};
-pub use run::{Execution, RunReport};
+pub use run::{Execution, FeedbackCount, Loop, Replan, RunReport};
 pub use runs::{Runs, execute};
 pub use watch::{Cause, Departure};

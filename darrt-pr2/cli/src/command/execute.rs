@@ -2,10 +2,12 @@
 
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 
 use darrt_core::budget::Cancel;
+use darrt_core::observe::Silent;
 use darrt_execute::noise::REAL_NOISE;
-use darrt_execute::{Departure, Execution, NoiseModel, Runs, execute};
+use darrt_execute::{Departure, Execution, Loop, NoiseModel, Replan, Runs, execute};
 
 use super::{check, plan as planning};
 use crate::args::ExecuteOptions;
@@ -14,10 +16,16 @@ use crate::exit::{Exit, Failure};
 use crate::output::Output;
 use crate::progress::Bar;
 use crate::table;
+use darrt_task::plan_file::PlanFile;
+use darrt_task::planning::PlanRequest;
+use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
+use darrt_task::replan::ReplanRequest;
 use darrt_task::text::counted;
 use darrt_task::text_file;
 
+/// Iterations in which another plan is looked for on the way: a clock would make runs depend on the machine.
+const REPLAN_ITERATIONS: u64 = 6000;
 /// How often a plan is executed when its runs differ.
 const NOISY_RUNS: u64 = 100;
 /// Largest accepted noise file, bytes.
@@ -46,7 +54,9 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     let bar = Bar::start(usize::try_from(count).unwrap_or(usize::MAX), "runs", options.quiet);
     let successes = AtomicUsize::new(0);
     let threads = options.threads.unwrap_or_else(cores);
-    let runs = execute(&execution, &noise, (options.seed, count), threads, &cancel, &|report| {
+    let replanner = Replanner { program, seed: options.seed, cancel: &cancel };
+    let control = if options.replan { Loop::Closed(&replanner) } else { Loop::Open };
+    let runs = execute(&execution, &noise, control, (options.seed, count), threads, &cancel, &|report| {
         let so_far = successes.fetch_add(usize::from(report.is_success), Ordering::Relaxed);
         bar.advance(&format!(", {} succeeded", so_far + usize::from(report.is_success)));
     });
@@ -66,6 +76,25 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     }
     let of = counted(count, "run");
     Err(Failure::new(Exit::NotSolved, format!("{name}: executed: {failed} of {of} failed")))
+}
+
+/// The planner, for executions that look where everything is.
+struct Replanner<'a> {
+    program: &'a dyn Program,
+    seed: u64,
+    cancel: &'a Cancel,
+}
+
+impl Replan for Replanner<'_> {
+    fn replan(&self, problem: &ProblemFile, old: &PlanFile) -> Option<PlanFile> {
+        let plan = PlanRequest {
+            iterations: Some(REPLAN_ITERATIONS),
+            time_limit: Some(Duration::MAX),
+            ..PlanRequest::new(problem.clone(), self.seed)
+        };
+        let request = ReplanRequest { plan, from: old.clone(), keep: None };
+        self.program.replan(&request, self.cancel, &mut Silent).ok()?.result.plan
+    }
 }
 
 /// A part of the built-in noise, or a file.
@@ -127,12 +156,13 @@ fn words(runs: &Runs, plan_s: f64) -> String {
 
 /// One departure in a sentence.
 fn sentence(departure: &Departure) -> String {
-    let Departure { step, primitive, time, cause, body, other, off_m, lean_deg, force_n } = departure;
+    let Departure { plan, step, primitive, time, cause, body, other, off_m, lean_deg, force_n } = departure;
     let other = other.as_ref().map_or_else(String::new, |other| format!(" and {other}"));
     let mut numbers = vec![format!("{:.1} mm", off_m * 1000.0), format!("{lean_deg:.1} degrees")];
     if *force_n > 0.0 {
         numbers.push(format!("{force_n:.0} N"));
     }
     let (percent, numbers) = (time * 100.0, numbers.join(", "));
-    format!("step {step} ({primitive}) at {percent:.0} %: {body}{other}: {}: {numbers}", cause.words())
+    let plan = if *plan == 0 { String::new() } else { format!("plan {plan}, ") };
+    format!("{plan}step {step} ({primitive}) at {percent:.0} %: {body}{other}: {}: {numbers}", cause.words())
 }

@@ -1,0 +1,333 @@
+//! One execution under way: the world steps on, the plan goes on, and, in a closed loop, the robot looks and corrects.
+
+use std::sync::Arc;
+
+use darrt_core::budget::Cancel;
+use darrt_primitives::contract::HandUse;
+use nalgebra::Isometry3;
+
+use crate::belief::Belief;
+use crate::course::Course;
+use crate::feedback::{Feedback, Offsets};
+use crate::goal::{self, Now, ObjectEnd};
+use crate::noise::{Draws, NoiseModel, PlanarError};
+use crate::progress::{Posture, advance};
+use crate::run::{Execution, FeedbackCount, Loop, RunReport, StepEnd};
+use crate::stage::{Owner, STEP_S, Stage, TrueObject};
+use crate::timeline::{Command, TimedStep};
+use crate::watch::{Cause, Departure, Event, Watch};
+
+/// Time that things are given to come to rest before the plan begins and when it is over, s.
+const SETTLE_S: f64 = 0.5;
+/// Time steps between two looks at where the objects are: a tenth of a second.
+const LOOK_EVERY: u64 = 24;
+/// How fast joints go when the arm is corrected while all else stands, rad/s or m/s: a hand at 0.8 m goes 0.1 m/s.
+const CORRECTING_PER_S: f64 = 0.12;
+/// Offsets of joints that differ by less are the same.
+const SAME_OFFSET: f64 = 1e-6;
+
+/// An execution under way.
+pub(crate) struct Performance<'a> {
+    of: &'a Execution<'a>,
+    course: Arc<Course>,
+    /// How many plans there were before this one.
+    plan: usize,
+    stage: Stage<'a>,
+    watch: Watch,
+    biases: Vec<f64>,
+    draws: Draws,
+    /// Of the base, before and after the drive under way.
+    error: PlanarError,
+    next_error: PlanarError,
+    feedback: Option<Feedback>,
+    departure: Option<Departure>,
+    stopped: Option<Departure>,
+    ticks: u64,
+    /// By object.
+    planned: Vec<Isometry3<f64>>,
+}
+
+impl<'a> Performance<'a> {
+    pub(crate) fn begin(
+        of: &'a Execution<'a>,
+        objects: &[TrueObject],
+        biases: Vec<f64>,
+        (noise, draws): (&NoiseModel, Draws),
+        control: Loop<'a>,
+    ) -> Self {
+        let course = Arc::clone(&of.course);
+        let (base, mut joints) = course.timeline.start();
+        add(&mut joints, &biases);
+        let mut stage = Stage::new(&of.robot, &of.scenery, objects, base, &joints);
+        let finger = joints.get(of.robot.finger).copied().unwrap_or_default();
+        for _ in 0..ticks(SETTLE_S) {
+            stage.step(base, &mut joints, finger);
+        }
+        let watch = Watch::new(&stage, objects.len(), of.scenery.floor);
+        let error = [0.0; 3];
+        let planned = course.before(0).to_vec();
+        let feedback = match control {
+            Loop::Open => None,
+            Loop::Closed(_) => Some(Feedback::new(of, &course, noise)),
+        };
+        Self {
+            of,
+            course,
+            plan: 0,
+            stage,
+            watch,
+            biases,
+            draws,
+            error,
+            next_error: error,
+            feedback,
+            departure: None,
+            stopped: None,
+            ticks: 0,
+            planned,
+        }
+    }
+
+    /// To the end of the plan; `None` if it was cancelled meanwhile.
+    pub(crate) fn perform(mut self, run: u64, cancel: &Cancel) -> Option<RunReport> {
+        let mut trail = Vec::new();
+        let mut index = 0;
+        loop {
+            let course = Arc::clone(&self.course);
+            let Some(step) = course.step(index) else { break };
+            if cancel.is_cancelled() {
+                return None;
+            }
+            if step.senses {
+                self.look(index);
+            }
+            let offsets = self.prepare(index, step);
+            if step.contract.drives() {
+                self.next_error = self.draws.drive(self.unknown_error(step));
+            }
+            let is_over = self.stopped.is_some() || self.step(index, step, offsets.as_ref());
+            trail.push(self.end_of(index, step));
+            if is_over {
+                break;
+            }
+            index += 1;
+        }
+        self.finish();
+        Some(self.report(run, trail))
+    }
+
+    /// What of the error of the base the robot does not know: it drives from where it believes to be.
+    fn unknown_error(&self, step: &TimedStep) -> PlanarError {
+        let Some(feedback) = &self.feedback else { return self.error };
+        let planned = self.course.timeline.at(step, step.begin_s, &self.of.robot).base;
+        [0, 1, 2].map(|i| self.error[i] + planned[i] - feedback.belief.base[i])
+    }
+
+    /// A robot that looks does so.
+    fn look(&mut self, index: usize) {
+        let steps = &self.course.timeline.steps;
+        let at = steps.get(index).map(|step| (step, step.begin_s)).or(steps.last().map(|step| (step, step.end_s)));
+        let (Some(feedback), Some((step, time_s))) = (&mut self.feedback, at) else { return };
+        let planned = self.course.timeline.at(step, time_s, &self.of.robot).base;
+        let base = [0, 1, 2].map(|i| planned[i] + self.error[i]);
+        let objects: Vec<_> = (0..self.of.problem.objects.len()).map(|object| self.stage.object(object)).collect();
+        feedback.look(self.of, &self.course, index, (base, &objects), &mut self.draws);
+        feedback.now = feedback.posture(self.of, &self.course, step, time_s);
+    }
+
+    /// What is added to the joints in the step that begins; the arm has been moved to where it begins.
+    fn prepare(&mut self, index: usize, step: &TimedStep) -> Option<Offsets> {
+        let feedback = self.feedback.as_mut()?;
+        let offsets = feedback.offsets(self.of, &self.course, index);
+        self.move_to(index, step, step.begin_s, &offsets.first());
+        Some(offsets)
+    }
+
+    /// Moves the arm until this is added to its joints, while the plan stands still.
+    fn move_to(&mut self, index: usize, step: &TimedStep, time_s: f64, to: &[f64]) {
+        let Some(feedback) = &mut self.feedback else { return };
+        let from = std::mem::replace(&mut feedback.offset, to.to_vec());
+        let way = from.iter().zip(to).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
+        if way < SAME_OFFSET {
+            return;
+        }
+        let count = ticks(way / CORRECTING_PER_S).max(1);
+        for tick in 1..=count {
+            let part = tick as f64 / count as f64;
+            let offset: Vec<_> = from.iter().zip(to).map(|(from, to)| from + part * (to - from)).collect();
+            let command = self.course.timeline.at(step, time_s, &self.of.robot);
+            self.tick(command, self.error, &offset);
+            if let Some(event) = self.watch.touch(&self.stage, step, step.is_holding(time_s)) {
+                self.note(index, 0.0, &event);
+                if self.stopped.is_some() {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// One time step in which the robot does as it is told, with the errors that it has.
+    fn tick(&mut self, mut command: Command, error: PlanarError, offset: &[f64]) {
+        let base = [0, 1, 2].map(|i| command.base[i] + error[i]);
+        for (variable, by) in self.of.robot.arm.iter().zip(offset) {
+            if let Some(joint) = command.joints.get_mut(*variable) {
+                *joint += by;
+            }
+        }
+        add(&mut command.joints, &self.biases);
+        self.stage.step(base, &mut command.joints, command.finger);
+        self.ticks += 1;
+    }
+
+    /// Executes one step; true if that was the last.
+    fn step(&mut self, index: usize, step: &TimedStep, offsets: Option<&Offsets>) -> bool {
+        self.watch.begin(&self.stage, &self.planned);
+        let before = self.feedback.as_ref().map(|feedback| feedback.posture(self.of, &self.course, step, step.begin_s));
+        let (length_s, mut elapsed) = (step.end_s - step.begin_s, 0);
+        let count = ticks(length_s);
+        while elapsed < count {
+            elapsed += 1;
+            let time_s = step.begin_s + elapsed as f64 * STEP_S;
+            let command = self.course.timeline.at(step, time_s, &self.of.robot);
+            let error = [0, 1, 2].map(|i| self.error[i] + command.done * (self.next_error[i] - self.error[i]));
+            let offset = offsets.map_or_else(Vec::new, |offsets| offsets.at(time_s - step.begin_s, command.done));
+            self.tick(command, error, &offset);
+            if let Some(feedback) = &mut self.feedback {
+                feedback.offset = offset;
+            }
+            let is_held = step.is_holding(time_s);
+            let mut event = self.watch.touch(&self.stage, step, is_held);
+            if event.is_none() && (elapsed % LOOK_EVERY == 0 || elapsed == count) {
+                event = self.watch.look(&self.stage, step, is_held);
+            }
+            if let Some(event) = event {
+                self.note(index, elapsed as f64 / count as f64, &event);
+                if self.stopped.is_some() {
+                    return true;
+                }
+            }
+        }
+        self.error = self.next_error;
+        self.planned.clone_from(&step.ends);
+        if let (Some(feedback), Some(before)) = (&mut self.feedback, before) {
+            let mut belief = feedback.belief.clone();
+            let end = |belief: &Belief| {
+                let command = self.course.timeline.at(step, step.end_s, &self.of.robot);
+                Posture::new(self.of, belief, (&command.base, &command.joints), &feedback.offset)
+            };
+            advance(self.of, &self.course, &mut belief, (index, step), &before, &end);
+            feedback.now = end(&belief);
+            feedback.belief = belief;
+        }
+        if let Some(event) = self.watch.end(&self.stage, step) {
+            self.note(index, 1.0, &event);
+        }
+        false
+    }
+
+    /// The first event is the departure; what follows is its consequence.
+    fn note(&mut self, step: usize, time: f64, event: &Event) {
+        let departure = || self.of.departure(&self.course, (self.plan, step), time, event);
+        if self.departure.is_none() {
+            self.departure = Some(departure());
+        }
+        if event.is_final() {
+            self.stopped = Some(departure());
+        }
+    }
+
+    fn end_of(&self, index: usize, step: &TimedStep) -> StepEnd {
+        let pairs = || step.ends.iter().enumerate().map(|(object, end)| (self.stage.object(object), end));
+        StepEnd {
+            plan: self.plan,
+            step: index + 1,
+            primitive: self.course.primitive(index),
+            off_m: pairs().map(|(now, end)| (now.translation.vector - end.translation.vector).norm()).collect(),
+            lean_deg: pairs().map(|(now, end)| goal::lean_deg(&now, end)).collect(),
+        }
+    }
+
+    /// The plan is over: a robot that looks brings what it still holds to where it should be. Then everything comes to rest.
+    fn finish(&mut self) {
+        let course = Arc::clone(&self.course);
+        let last = course.timeline.steps.len().saturating_sub(1);
+        let Some(step) = course.step(last).filter(|_| self.stopped.is_none()) else { return };
+        if self.feedback.is_some() && step.contract.hand == HandUse::Carries {
+            self.look(last + 1);
+            let wanted = self.feedback.as_mut().and_then(|feedback| feedback.wanted_after(self.of, &course, last));
+            if let Some(wanted) = wanted {
+                self.move_to(last, step, step.end_s, &wanted);
+            }
+        }
+        let offset = self.feedback.as_ref().map_or_else(Vec::new, |feedback| feedback.offset.clone());
+        for _ in 0..ticks(SETTLE_S) {
+            let command = course.timeline.at(step, step.end_s, &self.of.robot);
+            self.tick(command, self.error, &offset);
+            self.ticks -= 1;
+        }
+    }
+
+    fn report(mut self, run: u64, trail: Vec<StepEnd>) -> RunReport {
+        let last = self.course.timeline.steps.last();
+        let held = last.filter(|step| step.contract.hand != HandUse::LetsGo).and_then(|step| step.holds);
+        let objects = self.of.problem.objects.iter().enumerate().map(|(index, object)| {
+            let is_planned_in_hand = held.is_some_and(|(held, _)| held == index);
+            let now = Now {
+                pose: self.stage.object(index),
+                is_in_hand: is_planned_in_hand && !self.stage.is_closed(),
+                planned: self.planned.get(index).copied().unwrap_or_else(Isometry3::identity),
+                depth_m: self.of.depths.get(index).copied().unwrap_or_default(),
+            };
+            goal::end(self.of.problem, &self.of.scene, &object.name, &now)
+        });
+        let objects: Vec<ObjectEnd> = objects.collect();
+        let is_success = self.stopped.is_none() && objects.iter().all(|object| object.is_there);
+        let is_near = self.stopped.is_none() && objects.iter().all(|object| object.is_near);
+        if !is_success && self.departure.is_none() {
+            self.departure = self.added_up(&objects);
+        }
+        let feedback = self.feedback.as_ref().map(|feedback| FeedbackCount {
+            looks: feedback.looks,
+            corrections: feedback.corrections,
+            out_of_reach: feedback.out_of_reach,
+            ..FeedbackCount::default()
+        });
+        RunReport {
+            run,
+            is_success,
+            is_near,
+            departure: self.departure,
+            stopped: self.stopped,
+            objects,
+            trail,
+            feedback,
+            seconds: self.ticks as f64 * STEP_S,
+        }
+    }
+
+    /// What is off at the end though nothing was far off on the way.
+    fn added_up(&self, objects: &[ObjectEnd]) -> Option<Departure> {
+        let index = objects.iter().position(|object| !object.is_there)?;
+        let object = objects.get(index)?;
+        let event = Event {
+            cause: Cause::Added,
+            body: Owner::Object(index),
+            other: None,
+            off_m: object.off_m,
+            lean_deg: object.lean_deg,
+            force_n: 0.0,
+        };
+        let last = self.course.timeline.steps.len().saturating_sub(1);
+        Some(self.of.departure(&self.course, (self.plan, last), 1.0, &event))
+    }
+}
+
+fn add(joints: &mut [f64], biases: &[f64]) {
+    joints.iter_mut().zip(biases).for_each(|(joint, bias)| *joint += bias);
+}
+
+/// Time steps in so many seconds.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "seconds of a plan, not negative")]
+fn ticks(seconds: f64) -> u64 {
+    (seconds / STEP_S).ceil().clamp(0.0, 1e9) as u64
+}
