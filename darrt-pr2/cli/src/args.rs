@@ -249,6 +249,9 @@ pub struct ExecuteOptions {
     /// Close the loop: look before every contact and after every drive, correct the arm, plan anew where that is not enough
     #[arg(long)]
     pub replan: bool,
+    /// Execute nothing: tell how far off everything may be after every step, and how likely success is
+    #[arg(long, conflicts_with = "runs")]
+    pub predict: bool,
     /// How often [default: once without noise, else 100 times]
     #[arg(long, value_name = "NUMBER", value_parser = run_count, allow_hyphen_values = true)]
     pub runs: Option<u64>,

@@ -10,7 +10,7 @@ use nalgebra::{Isometry3, Point2, Point3};
 use crate::arm::Arm;
 use crate::belief::{Belief, Sight, carried, level_change};
 use crate::course::Course;
-use crate::noise::{Draws, NoiseModel, PlanarError};
+use crate::noise::{NoiseModel, PlanarError};
 use crate::progress::Posture;
 use crate::run::Execution;
 use crate::timeline::TimedStep;
@@ -111,7 +111,7 @@ impl Feedback {
         course: &Course,
         index: usize,
         (base, objects): (PlanarError, &[Isometry3<f64>]),
-        draws: &mut Draws,
+        error: &mut dyn FnMut() -> PlanarError,
     ) {
         self.looks += 1;
         let world_from_base = crate::robot::world_from_base(base);
@@ -123,12 +123,12 @@ impl Feedback {
             self.belief.see(&Sight { object, world_from_room, base_from_body });
         };
         // The same draws whatever there is to see.
-        let error = draws.sight();
+        let of_room = error();
         if let Some(room) = furniture(of, course, index) {
-            sight(None, &Isometry3::from(room.coords), error);
+            sight(None, &Isometry3::from(room.coords), of_room);
         }
         for (object, pose) in objects.iter().enumerate() {
-            sight(Some(object), pose, draws.sight());
+            sight(Some(object), pose, error());
         }
     }
 

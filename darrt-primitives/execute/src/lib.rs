@@ -4,6 +4,7 @@
 //! |---|---|
 //! | what is executed, and how did it go? | [`run`] |
 //! | how are many runs done? | [`runs`] |
+//! | what is to be expected before it is tried? | [`predict`] |
 //! | what may be off? | [`noise`] |
 //! | what went wrong first? | [`watch`] |
 //! | is it where it should be? | [`goal`] |
@@ -26,6 +27,7 @@ pub mod goal;
 mod known_cases;
 pub mod noise;
 mod performance;
+pub mod predict;
 mod progress;
 mod robot;
 pub mod run;
@@ -37,6 +39,7 @@ pub mod watch;
 
 pub use error::ExecuteError;
 pub use noise::{NoiseError, NoiseModel};
+pub use predict::{Prediction, Spread, StepPrediction};
 pub use run::{Execution, FeedbackCount, Loop, Replan, RunReport};
 pub use runs::{Runs, execute};
 pub use watch::{Cause, Departure};

@@ -131,7 +131,8 @@ impl<'a> Performance<'a> {
         let planned = self.course.timeline.at(step, time_s, &self.of.robot).base;
         let base = [0, 1, 2].map(|i| planned[i] + self.error[i]);
         let objects: Vec<_> = (0..self.of.problem.objects.len()).map(|object| self.stage.object(object)).collect();
-        feedback.look(self.of, &self.course, index, (base, &objects), &mut self.draws);
+        let draws = &mut self.draws;
+        feedback.look(self.of, &self.course, index, (base, &objects), &mut || draws.sight());
         feedback.now = feedback.posture(self.of, &self.course, step, time_s);
     }
 

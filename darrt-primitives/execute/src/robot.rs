@@ -23,6 +23,8 @@ pub(crate) struct Robot {
     pub(crate) finger: usize,
     pub(crate) tool: usize,
     pub(crate) tips: [usize; 2],
+    /// How far the fingertips reach beyond the tool frame, out of the hand, m.
+    pub(crate) reach_beyond_tool_m: f64,
     /// By link: does no joint move it?
     pub(crate) is_base: Vec<bool>,
     pub(crate) hand: Hand,
@@ -90,6 +92,13 @@ impl Robot {
         }
         let between = between(&tree, &pieces, tool, tips);
         let hand = Hand::new(&tree, finger, tool, tips, between)?;
+        let tip_pieces = pieces.get(tips[0]).into_iter().flatten();
+        let tool_from_tip = hand.at_joint(hand.closed()).tool_from_tip[0];
+        let reach = tip_pieces.map(|piece| {
+            let at = Pose::from(tool_from_tip) * piece.body_from_piece;
+            piece.shape.compute_aabb(&at).maxs.x
+        });
+        let reach_beyond_tool_m = reach.fold(0.0, f64::max);
         Ok(Self {
             tree,
             pieces,
@@ -97,6 +106,7 @@ impl Robot {
             finger,
             tool,
             tips,
+            reach_beyond_tool_m,
             is_base,
             hand,
             grip_force_n: facts.grip_force_n,

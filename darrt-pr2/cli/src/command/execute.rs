@@ -7,7 +7,7 @@ use std::time::Duration;
 use darrt_core::budget::Cancel;
 use darrt_core::observe::Silent;
 use darrt_execute::noise::REAL_NOISE;
-use darrt_execute::{Departure, Execution, Loop, NoiseModel, Replan, Runs, execute};
+use darrt_execute::{Departure, Execution, Loop, NoiseModel, Prediction, Replan, Runs, Spread, execute};
 
 use super::{check, plan as planning};
 use crate::args::ExecuteOptions;
@@ -48,6 +48,16 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     plan.check_complete().map_err(|flaw| refuse(&flaw))?;
     let robot = program.facts(&plan.problem).map_err(|error| refuse(&error))?;
     let execution = Execution::new(&plan, &robot).map_err(|error| refuse(&error))?;
+    let prediction = execution.predict(&noise, options.replan);
+    if options.predict {
+        let objects: Vec<_> = plan.problem.objects.iter().map(|object| object.name.as_str()).collect();
+        if options.json {
+            output.print(&to_json(&prediction, "the prediction")?)?;
+        } else if !options.quiet {
+            output.print(&expected(&prediction, &objects))?;
+        }
+        return Ok(Exit::Solved);
+    }
     let count = options.runs.unwrap_or(if noise.is_none() { 1 } else { NOISY_RUNS });
     let cancel = Cancel::new();
     planning::listen(&cancel);
@@ -62,9 +72,9 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     });
     bar.finish();
     if options.json {
-        output.print(&json(&runs, &noise, options.seed, count, execution.duration_s())?)?;
+        output.print(&json(&runs, &noise, options.seed, count, execution.duration_s(), &prediction)?)?;
     } else if !options.quiet {
-        output.print(&words(&runs, execution.duration_s()))?;
+        output.print(&words(&runs, execution.duration_s(), &prediction))?;
     }
     if !runs.is_complete {
         let left = counted(count - runs.runs.len() as u64, "run");
@@ -111,7 +121,14 @@ fn noise(text: &str) -> Result<NoiseModel, Failure> {
     }
 }
 
-fn json(runs: &Runs, noise: &NoiseModel, seed: u64, count: u64, plan_s: f64) -> Result<String, Failure> {
+fn json(
+    runs: &Runs,
+    noise: &NoiseModel,
+    seed: u64,
+    count: u64,
+    plan_s: f64,
+    prediction: &Prediction,
+) -> Result<String, Failure> {
     let value = serde_json::json!({
         "asked": count,
         "complete": runs.is_complete,
@@ -120,20 +137,56 @@ fn json(runs: &Runs, noise: &NoiseModel, seed: u64, count: u64, plan_s: f64) -> 
         "plan_seconds": plan_s,
         "successes": runs.successes(),
         "within_5_cm": runs.near(),
+        "predicted": { "success": prediction.success, "within_5_cm": prediction.within_5_cm },
         "failures": runs.failures(),
         "runs": runs.runs,
     });
-    let text = serde_json::to_string_pretty(&value);
-    text.map_err(|error| Failure::new(Exit::CannotWrite, format!("the runs cannot be written as JSON: {error}")))
+    to_json(&value, "the runs")
 }
 
-fn words(runs: &Runs, plan_s: f64) -> String {
+fn to_json(value: &impl serde::Serialize, what: &str) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value);
+    text.map_err(|error| Failure::new(Exit::CannotWrite, format!("{what} cannot be written as JSON: {error}")))
+}
+
+/// What is expected, as a table.
+fn expected(prediction: &Prediction, objects: &[&str]) -> String {
+    let percent = |part: f64| format!("{:.0} %", 100.0 * part);
+    let millimetres = |spread: &Spread| format!("{:.1}", 1000.0 * spread.largest_m());
+    let titles = ["step", "primitive", "base (mm)", "hand (mm)", "to hand (mm)", "succeeds"];
+    let mut table = table::with_header(
+        titles.map(str::to_owned).into_iter().chain(objects.iter().map(|name| format!("{name} (mm)"))),
+    );
+    for step in &prediction.steps {
+        let primitive = if step.looks { format!("look, {}", step.primitive) } else { step.primitive.clone() };
+        let against = step.against_hand.as_ref().map(millimetres).unwrap_or_default();
+        let cells = [
+            step.step.to_string(),
+            primitive,
+            millimetres(&step.base),
+            millimetres(&step.hand),
+            against,
+            percent(step.success),
+        ];
+        table.add_row(cells.into_iter().chain(step.objects.iter().map(millimetres)));
+    }
+    format!(
+        "expected: {} within tolerance, {} within 5 cm; standard deviations after every step in their worst direction\n{}",
+        percent(prediction.success),
+        percent(prediction.within_5_cm),
+        table::finished(table, [0]),
+    )
+}
+
+fn words(runs: &Runs, plan_s: f64, prediction: &Prediction) -> String {
     let all = runs.runs.len();
     let head = format!(
-        "executed: {} of {} succeeded, {} within 5 cm; {plan_s:.0} s on the clock of the plan",
+        "executed: {} of {} succeeded, {} within 5 cm (expected {:.0} and {:.0} %); {plan_s:.0} s on the clock of the plan",
         runs.successes(),
         counted(all as u64, "run"),
         runs.near(),
+        100.0 * prediction.success,
+        100.0 * prediction.within_5_cm,
     );
     let failures = runs.failures();
     if failures.is_empty() {
