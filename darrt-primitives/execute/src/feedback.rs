@@ -36,8 +36,9 @@ pub(crate) struct Feedback {
     last: Change,
     pub(crate) looks: usize,
     pub(crate) corrections: usize,
-    /// Corrections that no joints of the arm could do.
+    /// Corrections that no joints of the arm could do, and whether the last one was such.
     pub(crate) out_of_reach: usize,
+    pub(crate) is_out_of_reach: bool,
 }
 
 /// How a hand's way is moved: level, about a point.
@@ -95,7 +96,23 @@ impl Feedback {
         let belief = Belief::new(noise, base, of.robot.arm.len(), course.before(0), is_round);
         let offset = vec![0.0; of.robot.arm.len()];
         let now = Posture::new(of, &belief, (&base, &joints), &offset);
-        Self { belief, offset, now, last: Change::NONE, looks: 0, corrections: 0, out_of_reach: 0 }
+        Self {
+            belief,
+            offset,
+            now,
+            last: Change::NONE,
+            looks: 0,
+            corrections: 0,
+            out_of_reach: 0,
+            is_out_of_reach: false,
+        }
+    }
+
+    /// Another plan begins, with the robot at `command` (base and joints).
+    pub(crate) fn begin_anew(&mut self, of: &Execution<'_>, command: (&[f64; 3], &[f64])) {
+        self.offset.fill(0.0);
+        self.now = Posture::new(of, &self.belief, command, &self.offset);
+        (self.last, self.is_out_of_reach) = (Change::NONE, false);
     }
 
     /// The robot at a time of a step.
@@ -179,6 +196,7 @@ impl Feedback {
     /// What is added to the joints in a step.
     pub(crate) fn offsets(&mut self, of: &Execution<'_>, course: &Course, index: usize) -> Offsets {
         let rest = vec![0.0; self.offset.len()];
+        self.is_out_of_reach = false;
         let Some(step) = course.step(index) else { return Offsets::Blend(rest.clone(), rest) };
         if step.contract.drives() {
             return Offsets::Blend(rest.clone(), rest);
@@ -198,7 +216,7 @@ impl Feedback {
         let mut time_s = step.begin_s;
         loop {
             let Some(row) = self.reach(of, course, step, time_s, &change, &seed) else {
-                self.out_of_reach += 1;
+                (self.out_of_reach, self.is_out_of_reach) = (self.out_of_reach + 1, true);
                 return Offsets::Blend(self.offset.clone(), self.offset.clone());
             };
             seed.clone_from(&row);
@@ -225,7 +243,7 @@ impl Feedback {
         }?;
         let wanted = self.reach(of, course, step, step.end_s, &change, &self.offset);
         if wanted.is_none() {
-            self.out_of_reach += 1;
+            (self.out_of_reach, self.is_out_of_reach) = (self.out_of_reach + 1, true);
         }
         Some(wanted.unwrap_or_else(|| self.offset.clone()))
     }

@@ -11,7 +11,7 @@
 //! | when is the robot where? | `course`, `timeline` |
 //! | what happens in one execution? | `performance` |
 //! | what does the robot know of where everything is? | `belief`, `progress` |
-//! | what does it do about it? | `feedback`, `arm` |
+//! | what does it do about it? | `feedback`, `arm`, `recovery` |
 //! | what is the world made of? | `stage`, `solids`, `robot`, `fingers` |
 //!
 //! Metres, kilograms, seconds, radians; the floor is z = 0, z up. The engine is rapier; its types stay inside.
@@ -29,6 +29,7 @@ pub mod noise;
 mod performance;
 pub mod predict;
 mod progress;
+mod recovery;
 mod robot;
 pub mod run;
 pub mod runs;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use darrt_core::budget::Cancel;
 use darrt_primitives::contract::HandUse;
+use darrt_task::plan_file::PlanFile;
 use nalgebra::Isometry3;
 
 use crate::belief::Belief;
@@ -28,23 +29,27 @@ const SAME_OFFSET: f64 = 1e-6;
 
 /// An execution under way.
 pub(crate) struct Performance<'a> {
-    of: &'a Execution<'a>,
-    course: Arc<Course>,
-    /// How many plans there were before this one.
-    plan: usize,
-    stage: Stage<'a>,
-    watch: Watch,
+    pub(crate) of: &'a Execution<'a>,
+    pub(crate) course: Arc<Course>,
+    /// The plan under way, and how many there were before it.
+    pub(crate) file: PlanFile,
+    pub(crate) plan: usize,
+    pub(crate) stage: Stage<'a>,
+    pub(crate) watch: Watch,
     biases: Vec<f64>,
     draws: Draws,
     /// Of the base, before and after the drive under way.
-    error: PlanarError,
-    next_error: PlanarError,
-    feedback: Option<Feedback>,
+    pub(crate) error: PlanarError,
+    pub(crate) next_error: PlanarError,
+    pub(crate) feedback: Option<Feedback>,
+    pub(crate) control: Loop<'a>,
+    pub(crate) replans: usize,
+    pub(crate) failed_replans: usize,
     departure: Option<Departure>,
-    stopped: Option<Departure>,
+    pub(crate) stopped: Option<Departure>,
     ticks: u64,
     /// By object.
-    planned: Vec<Isometry3<f64>>,
+    pub(crate) planned: Vec<Isometry3<f64>>,
 }
 
 impl<'a> Performance<'a> {
@@ -73,6 +78,7 @@ impl<'a> Performance<'a> {
         Self {
             of,
             course,
+            file: of.plan.clone(),
             plan: 0,
             stage,
             watch,
@@ -81,6 +87,9 @@ impl<'a> Performance<'a> {
             error,
             next_error: error,
             feedback,
+            control,
+            replans: 0,
+            failed_replans: 0,
             departure: None,
             stopped: None,
             ticks: 0,
@@ -93,15 +102,29 @@ impl<'a> Performance<'a> {
         let mut trail = Vec::new();
         let mut index = 0;
         loop {
-            let course = Arc::clone(&self.course);
-            let Some(step) = course.step(index) else { break };
             if cancel.is_cancelled() {
                 return None;
             }
-            if step.senses {
+            let course = Arc::clone(&self.course);
+            let Some(step) = course.step(index) else {
+                if self.missed_goal() && self.replan(index) {
+                    index = 0;
+                    continue;
+                }
+                break;
+            };
+            let is_lost = self.feedback.is_some() && step.contract.begins_holding() && self.stage.is_closed();
+            if step.senses || is_lost {
                 self.look(index);
             }
-            let offsets = self.prepare(index, step);
+            let offsets = self.feedback.as_mut().map(|feedback| feedback.offsets(self.of, &course, index));
+            if (is_lost || self.is_too_far(index, step)) && self.replan(index) {
+                index = 0;
+                continue;
+            }
+            if let Some(offsets) = &offsets {
+                self.move_to(index, step, step.begin_s, &offsets.first());
+            }
             if step.contract.drives() {
                 self.next_error = self.draws.drive(self.unknown_error(step));
             }
@@ -123,29 +146,44 @@ impl<'a> Performance<'a> {
         [0, 1, 2].map(|i| self.error[i] + planned[i] - feedback.belief.base[i])
     }
 
-    /// A robot that looks does so.
-    fn look(&mut self, index: usize) {
+    /// The beginning of a step, or the end of the plan.
+    fn time_at(&self, index: usize) -> Option<(&TimedStep, f64)> {
         let steps = &self.course.timeline.steps;
+        steps.get(index).map(|step| (step, step.begin_s)).or(steps.last().map(|step| (step, step.end_s)))
+    }
+
+    /// Where the base truly is at the beginning of a step.
+    pub(crate) fn true_base(&self, index: usize) -> PlanarError {
+        let Some((step, time_s)) = self.time_at(index) else { return self.error };
+        let planned = self.course.timeline.at(step, time_s, &self.of.robot).base;
+        [0, 1, 2].map(|i| planned[i] + self.error[i])
+    }
+
+    /// What the joints have been told at the beginning of a step, by variable.
+    pub(crate) fn told_joints(&self, index: usize) -> Option<Vec<f64>> {
+        let (step, time_s) = self.time_at(index)?;
+        let mut joints = self.course.timeline.at(step, time_s, &self.of.robot).joints;
+        for (variable, by) in self.of.robot.arm.iter().zip(&self.feedback.as_ref()?.offset) {
+            *joints.get_mut(*variable)? += by;
+        }
+        Some(joints)
+    }
+
+    /// A robot that looks does so.
+    pub(crate) fn look(&mut self, index: usize) {
+        let base = self.true_base(index);
+        let course = Arc::clone(&self.course);
+        let steps = &course.timeline.steps;
         let at = steps.get(index).map(|step| (step, step.begin_s)).or(steps.last().map(|step| (step, step.end_s)));
         let (Some(feedback), Some((step, time_s))) = (&mut self.feedback, at) else { return };
-        let planned = self.course.timeline.at(step, time_s, &self.of.robot).base;
-        let base = [0, 1, 2].map(|i| planned[i] + self.error[i]);
         let objects: Vec<_> = (0..self.of.problem.objects.len()).map(|object| self.stage.object(object)).collect();
         let draws = &mut self.draws;
         feedback.look(self.of, &self.course, index, (base, &objects), &mut || draws.sight());
         feedback.now = feedback.posture(self.of, &self.course, step, time_s);
     }
 
-    /// What is added to the joints in the step that begins; the arm has been moved to where it begins.
-    fn prepare(&mut self, index: usize, step: &TimedStep) -> Option<Offsets> {
-        let feedback = self.feedback.as_mut()?;
-        let offsets = feedback.offsets(self.of, &self.course, index);
-        self.move_to(index, step, step.begin_s, &offsets.first());
-        Some(offsets)
-    }
-
     /// Moves the arm until this is added to its joints, while the plan stands still.
-    fn move_to(&mut self, index: usize, step: &TimedStep, time_s: f64, to: &[f64]) {
+    pub(crate) fn move_to(&mut self, index: usize, step: &TimedStep, time_s: f64, to: &[f64]) {
         let Some(feedback) = &mut self.feedback else { return };
         let from = std::mem::replace(&mut feedback.offset, to.to_vec());
         let way = from.iter().zip(to).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
@@ -248,18 +286,10 @@ impl<'a> Performance<'a> {
         }
     }
 
-    /// The plan is over: a robot that looks brings what it still holds to where it should be. Then everything comes to rest.
+    /// The plan is over: everything comes to rest.
     fn finish(&mut self) {
         let course = Arc::clone(&self.course);
-        let last = course.timeline.steps.len().saturating_sub(1);
-        let Some(step) = course.step(last).filter(|_| self.stopped.is_none()) else { return };
-        if self.feedback.is_some() && step.contract.hand == HandUse::Carries {
-            self.look(last + 1);
-            let wanted = self.feedback.as_mut().and_then(|feedback| feedback.wanted_after(self.of, &course, last));
-            if let Some(wanted) = wanted {
-                self.move_to(last, step, step.end_s, &wanted);
-            }
-        }
+        let Some(step) = course.timeline.steps.last().filter(|_| self.stopped.is_none()) else { return };
         let offset = self.feedback.as_ref().map_or_else(Vec::new, |feedback| feedback.offset.clone());
         for _ in 0..ticks(SETTLE_S) {
             let command = course.timeline.at(step, step.end_s, &self.of.robot);
@@ -291,7 +321,8 @@ impl<'a> Performance<'a> {
             looks: feedback.looks,
             corrections: feedback.corrections,
             out_of_reach: feedback.out_of_reach,
-            ..FeedbackCount::default()
+            replans: self.replans,
+            failed_replans: self.failed_replans,
         });
         RunReport {
             run,
