@@ -261,6 +261,12 @@ pub struct ExecuteOptions {
     /// Runs at the same time [default: one on every core]
     #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
+    /// Write a page of one run beside its plan: the first that fails, else the first
+    #[arg(long, value_name = "FILE", conflicts_with = "predict")]
+    pub page: Option<PathBuf>,
+    /// Write a recording of the same run: joint states and frames, as MCAP
+    #[arg(long, value_name = "FILE", conflicts_with = "predict")]
+    pub mcap: Option<PathBuf>,
     /// Print all runs, with where the objects were after every step, as one JSON object
     #[arg(long, conflicts_with = "quiet")]
     pub json: bool,

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | what is executed, and how did it go? | [`run`] |
 //! | how are many runs done? | [`runs`] |
+//! | what happened at every moment? | [`recording`] |
 //! | what is to be expected before it is tried? | [`predict`] |
 //! | what may be off? | [`noise`] |
 //! | what went wrong first? | [`watch`] |
@@ -29,6 +30,7 @@ pub mod noise;
 mod performance;
 pub mod predict;
 mod progress;
+pub mod recording;
 mod recovery;
 mod robot;
 pub mod run;
@@ -41,6 +43,7 @@ pub mod watch;
 pub use error::ExecuteError;
 pub use noise::{NoiseError, NoiseModel};
 pub use predict::{Prediction, Spread, StepPrediction};
+pub use recording::Recording;
 pub use run::{Execution, FeedbackCount, Loop, Replan, RunReport};
 pub use runs::{Runs, execute};
 pub use watch::{Cause, Departure};

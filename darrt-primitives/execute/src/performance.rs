@@ -13,6 +13,7 @@ use crate::feedback::{Feedback, Offsets};
 use crate::goal::{self, Now, ObjectEnd};
 use crate::noise::{Draws, NoiseModel, PlanarError};
 use crate::progress::{Posture, advance};
+use crate::recording::{FRAME_S, Frame, RecordedStep, Recording};
 use crate::run::{Execution, FeedbackCount, Loop, RunReport, StepEnd};
 use crate::stage::{Owner, STEP_S, Stage, TrueObject};
 use crate::timeline::{Command, TimedStep};
@@ -37,7 +38,7 @@ pub(crate) struct Performance<'a> {
     pub(crate) stage: Stage<'a>,
     pub(crate) watch: Watch,
     biases: Vec<f64>,
-    draws: Draws,
+    pub(crate) draws: Draws,
     /// Of the base, before and after the drive under way.
     pub(crate) error: PlanarError,
     pub(crate) next_error: PlanarError,
@@ -45,11 +46,15 @@ pub(crate) struct Performance<'a> {
     pub(crate) control: Loop<'a>,
     pub(crate) replans: usize,
     pub(crate) failed_replans: usize,
+    pub(crate) backed_off: usize,
     departure: Option<Departure>,
     pub(crate) stopped: Option<Departure>,
-    ticks: u64,
-    /// By object.
+    pub(crate) ticks: u64,
+    pub(crate) recording: Option<Recording>,
+    /// By object: where the plan has it at the end of the last step,
     pub(crate) planned: Vec<Isometry3<f64>>,
+    /// and where it has it now; kept up for recordings alone.
+    now_planned: Vec<Isometry3<f64>>,
 }
 
 impl<'a> Performance<'a> {
@@ -90,15 +95,23 @@ impl<'a> Performance<'a> {
             control,
             replans: 0,
             failed_replans: 0,
+            backed_off: 0,
             departure: None,
             stopped: None,
             ticks: 0,
+            recording: None,
+            now_planned: planned.clone(),
             planned,
         }
     }
 
+    /// The same with every moment written down.
+    pub(crate) fn recorded(self) -> Self {
+        Self { recording: Some(Recording::default()), ..self }
+    }
+
     /// To the end of the plan; `None` if it was cancelled meanwhile.
-    pub(crate) fn perform(mut self, run: u64, cancel: &Cancel) -> Option<RunReport> {
+    pub(crate) fn perform(mut self, run: u64, cancel: &Cancel) -> Option<(RunReport, Option<Recording>)> {
         let mut trail = Vec::new();
         let mut index = 0;
         loop {
@@ -122,25 +135,31 @@ impl<'a> Performance<'a> {
                 index = 0;
                 continue;
             }
+            self.write_step(index);
             if let Some(offsets) = &offsets {
                 self.move_to(index, step, step.begin_s, &offsets.first());
             }
             if step.contract.drives() {
                 self.next_error = self.draws.drive(self.unknown_error(step));
             }
-            let is_over = self.stopped.is_some() || self.step(index, step, offsets.as_ref());
+            let done = if self.stopped.is_some() { Some(0) } else { self.step(index, step, offsets.as_ref()) };
             trail.push(self.end_of(index, step));
-            if is_over {
-                break;
+            let Some(done) = done else {
+                index += 1;
+                continue;
+            };
+            match self.recover(index, done) {
+                Some(next) => index = next,
+                None => break,
             }
-            index += 1;
         }
         self.finish();
-        Some(self.report(run, trail))
+        let recording = self.recording.take();
+        Some((self.report(run, trail), recording))
     }
 
     /// What of the error of the base the robot does not know: it drives from where it believes to be.
-    fn unknown_error(&self, step: &TimedStep) -> PlanarError {
+    pub(crate) fn unknown_error(&self, step: &TimedStep) -> PlanarError {
         let Some(feedback) = &self.feedback else { return self.error };
         let planned = self.course.timeline.at(step, step.begin_s, &self.of.robot).base;
         [0, 1, 2].map(|i| self.error[i] + planned[i] - feedback.belief.base[i])
@@ -172,6 +191,10 @@ impl<'a> Performance<'a> {
     /// A robot that looks does so.
     pub(crate) fn look(&mut self, index: usize) {
         let base = self.true_base(index);
+        let looked_s = self.ticks as f64 * STEP_S;
+        if let (Some(recording), Some(_)) = (&mut self.recording, &self.feedback) {
+            recording.looks_s.push(looked_s);
+        }
         let course = Arc::clone(&self.course);
         let steps = &course.timeline.steps;
         let at = steps.get(index).map(|step| (step, step.begin_s)).or(steps.last().map(|step| (step, step.end_s)));
@@ -206,7 +229,7 @@ impl<'a> Performance<'a> {
     }
 
     /// One time step in which the robot does as it is told, with the errors that it has.
-    fn tick(&mut self, mut command: Command, error: PlanarError, offset: &[f64]) {
+    pub(crate) fn tick(&mut self, mut command: Command, error: PlanarError, offset: &[f64]) {
         let base = [0, 1, 2].map(|i| command.base[i] + error[i]);
         for (variable, by) in self.of.robot.arm.iter().zip(offset) {
             if let Some(joint) = command.joints.get_mut(*variable) {
@@ -216,10 +239,31 @@ impl<'a> Performance<'a> {
         add(&mut command.joints, &self.biases);
         self.stage.step(base, &mut command.joints, command.finger);
         self.ticks += 1;
+        self.write_frame(base, &command.joints);
     }
 
-    /// Executes one step; true if that was the last.
-    fn step(&mut self, index: usize, step: &TimedStep, offsets: Option<&Offsets>) -> bool {
+    /// Writes down where everything is, now and then.
+    fn write_frame(&mut self, base: [f64; 3], joints: &[f64]) {
+        let Some(recording) = &mut self.recording else { return };
+        let time_s = self.ticks as f64 * STEP_S;
+        if recording.frames.last().is_some_and(|last| time_s - last.time_s < FRAME_S - 0.5 * STEP_S) {
+            return;
+        }
+        let objects = (0..self.of.problem.objects.len()).map(|object| self.stage.object(object)).collect();
+        let planned = self.now_planned.clone();
+        recording.frames.push(Frame { time_s, base, joints: joints.to_vec(), objects, planned });
+    }
+
+    /// Writes down that a step begins.
+    pub(crate) fn write_step(&mut self, index: usize) {
+        let (plan, primitive, begin_s) = (self.plan, self.course.primitive(index), self.ticks as f64 * STEP_S);
+        if let Some(recording) = &mut self.recording {
+            recording.steps.push(RecordedStep { plan, step: index + 1, primitive, begin_s });
+        }
+    }
+
+    /// Executes one step; the number of time steps done if it was stopped.
+    fn step(&mut self, index: usize, step: &TimedStep, offsets: Option<&Offsets>) -> Option<u64> {
         self.watch.begin(&self.stage, &self.planned);
         let before = self.feedback.as_ref().map(|feedback| feedback.posture(self.of, &self.course, step, step.begin_s));
         let (length_s, mut elapsed) = (step.end_s - step.begin_s, 0);
@@ -227,6 +271,7 @@ impl<'a> Performance<'a> {
         while elapsed < count {
             elapsed += 1;
             let time_s = step.begin_s + elapsed as f64 * STEP_S;
+            self.plan_at(step, time_s);
             let command = self.course.timeline.at(step, time_s, &self.of.robot);
             let error = [0, 1, 2].map(|i| self.error[i] + command.done * (self.next_error[i] - self.error[i]));
             let offset = offsets.map_or_else(Vec::new, |offsets| offsets.at(time_s - step.begin_s, command.done));
@@ -242,7 +287,7 @@ impl<'a> Performance<'a> {
             if let Some(event) = event {
                 self.note(index, elapsed as f64 / count as f64, &event);
                 if self.stopped.is_some() {
-                    return true;
+                    return Some(elapsed);
                 }
             }
         }
@@ -261,7 +306,17 @@ impl<'a> Performance<'a> {
         if let Some(event) = self.watch.end(&self.stage, step) {
             self.note(index, 1.0, &event);
         }
-        false
+        None
+    }
+
+    /// For recordings: where the plan has the objects at a time.
+    fn plan_at(&mut self, step: &TimedStep, time_s: f64) {
+        if self.recording.is_some() {
+            let pairs = self.of.problem.objects.iter().zip(&self.planned);
+            let poses =
+                pairs.map(|(object, rest)| self.course.timeline.object(step, time_s, &object.name).unwrap_or(*rest));
+            self.now_planned = poses.collect();
+        }
     }
 
     /// The first event is the departure; what follows is its consequence.
@@ -323,6 +378,7 @@ impl<'a> Performance<'a> {
             out_of_reach: feedback.out_of_reach,
             replans: self.replans,
             failed_replans: self.failed_replans,
+            backed_off: self.backed_off,
         });
         RunReport {
             run,
@@ -360,6 +416,6 @@ fn add(joints: &mut [f64], biases: &[f64]) {
 
 /// Time steps in so many seconds.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "seconds of a plan, not negative")]
-fn ticks(seconds: f64) -> u64 {
+pub(crate) fn ticks(seconds: f64) -> u64 {
     (seconds / STEP_S).ceil().clamp(0.0, 1e9) as u64
 }

@@ -10,17 +10,23 @@ use nalgebra::Isometry3;
 use crate::course::Course;
 use crate::feedback::MOST_CORRECTED_M;
 use crate::goal::{self, Now};
-use crate::performance::Performance;
+use crate::performance::{Performance, ticks};
 use crate::run::Loop;
+use crate::stage::STEP_S;
 use crate::timeline::TimedStep;
 use crate::watch::Watch;
 
 /// Plans that are asked for in one run at most.
 const MOST_REPLANS: usize = 3;
+/// Times in one run that a robot goes back from what it has run into.
+const MOST_BACK: usize = 3;
 /// What stands on a surface may be this far from its height, metres: things rock, and are seen so.
 const ON_TOP_M: f64 = 0.01;
 /// An object that leans more has been knocked over, degrees: no plan begins with it.
 const UPRIGHT_DEG: f64 = 3.0;
+
+/// One that leans more than it did has fallen, degrees.
+const FALLEN_DEG: f64 = 30.0;
 
 impl Performance<'_> {
     /// Is the object of the next contact too far from the plan for the arm to be corrected, and may another plan begin here?
@@ -80,6 +86,85 @@ impl Performance<'_> {
         self.replans += 1;
         self.begin_anew(index, plan, course);
         true
+    }
+
+    /// A robot that looks has run into something or is held up: it goes back the way it came, looks, and goes on with another plan
+    /// or tries again. The step that is next; `None` if it gives up. `done` time steps of the step are behind it.
+    pub(crate) fn recover(&mut self, index: usize, done: u64) -> Option<usize> {
+        if self.feedback.is_none() || self.backed_off >= MOST_BACK || !self.is_upright() {
+            return None;
+        }
+        let course = Arc::clone(&self.course);
+        let (stopped, mut at) = (self.stopped.take(), index);
+        self.backed_off += 1;
+        self.go_back(course.step(index)?, done);
+        let holds = course.step(index)?.contract.begins_holding();
+        // To where another plan may begin.
+        while !holds && at > 0 && !course.step(at - 1).is_some_and(|before| before.contract.is_free()) {
+            at -= 1;
+            let step = course.step(at)?;
+            self.go_back(step, u64::MAX);
+        }
+        if self.stopped.is_some() {
+            self.stopped = stopped;
+            return None;
+        }
+        self.planned = course.before(at).to_vec();
+        self.look(at);
+        if !holds && self.replan(at) {
+            return Some(0);
+        }
+        if course.step(at).is_some_and(|step| self.is_too_far(at, step)) {
+            self.stopped = stopped;
+            return None;
+        }
+        Some(at)
+    }
+
+    /// Back to the beginning of a step of which so many time steps are behind the robot.
+    fn go_back(&mut self, step: &TimedStep, done: u64) {
+        let Some(feedback) = &self.feedback else { return };
+        let offset = feedback.offset.clone();
+        let whole = ticks(step.end_s - step.begin_s);
+        let course = Arc::clone(&self.course);
+        let at = |ticks: u64| step.begin_s + ticks as f64 * STEP_S;
+        let from = done.min(whole);
+        if from == 0 {
+            self.next_error = self.error;
+            return;
+        }
+        // Going back is a drive too: the shorter, the smaller the error of its own with which it ends.
+        let part = course.timeline.at(step, at(from), &self.of.robot).done;
+        let now = [0, 1, 2].map(|i| self.error[i] + part * (self.next_error[i] - self.error[i]));
+        let drives = step.contract.drives();
+        let end = if drives {
+            let drawn = self.draws.drive(now);
+            [0, 1, 2].map(|i| now[i] + part * (drawn[i] - now[i]))
+        } else {
+            self.error
+        };
+        for elapsed in (0..from).rev() {
+            let command = course.timeline.at(step, at(elapsed), &self.of.robot);
+            let left = if part > 0.0 { (command.done / part).clamp(0.0, 1.0) } else { 0.0 };
+            let error = if drives { [0, 1, 2].map(|i| end[i] + left * (now[i] - end[i])) } else { self.error };
+            self.tick(command, error, &offset);
+        }
+        (self.error, self.next_error) = (end, end);
+        let begin = course.timeline.at(step, step.begin_s, &self.of.robot);
+        if let Some(feedback) = &mut self.feedback {
+            if drives {
+                feedback.belief.drive(begin.base);
+            }
+            feedback.now = feedback.posture(self.of, &course, step, step.begin_s);
+        }
+    }
+
+    /// Does everything stand that is not in the hand?
+    fn is_upright(&self) -> bool {
+        (0..self.of.problem.objects.len()).all(|object| {
+            let held = self.planned.get(object).copied().unwrap_or_default();
+            goal::lean_deg(&self.stage.object(object), &held) <= FALLEN_DEG
+        })
     }
 
     fn begin_anew(&mut self, index: usize, plan: PlanFile, course: Course) {

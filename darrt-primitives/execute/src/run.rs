@@ -16,6 +16,7 @@ use crate::error::ExecuteError;
 use crate::goal::ObjectEnd;
 use crate::noise::{Draws, NoiseModel};
 use crate::performance::Performance;
+use crate::recording::Recording;
 use crate::robot::Robot;
 use crate::stage::{Owner, Scenery, TrueObject};
 use crate::watch::{Departure, Event};
@@ -94,6 +95,8 @@ pub struct FeedbackCount {
     pub replans: usize,
     /// Times that another plan was wanted and none was found.
     pub failed_replans: usize,
+    /// Times that it ran into something or was held up, and went back the way it had come.
+    pub backed_off: usize,
 }
 
 /// Where the objects are after a step.
@@ -150,6 +153,23 @@ impl<'a> Execution<'a> {
         control: Loop<'_>,
         cancel: &Cancel,
     ) -> Option<RunReport> {
+        Some(self.performance(noise, (seed, run), control).perform(run, cancel)?.0)
+    }
+
+    /// The same run, with every moment of it.
+    pub fn record(
+        &self,
+        noise: &NoiseModel,
+        (seed, run): (u64, u64),
+        control: Loop<'_>,
+        cancel: &Cancel,
+    ) -> Option<(RunReport, Recording)> {
+        let (report, recording) = self.performance(noise, (seed, run), control).recorded().perform(run, cancel)?;
+        Some((report, recording?))
+    }
+
+    /// The world at the start of a run.
+    fn performance<'b>(&'b self, noise: &NoiseModel, (seed, run): (u64, u64), control: Loop<'b>) -> Performance<'b> {
         let mut draws = Draws::new(*noise, seed, run);
         let objects = self.starts.iter().zip(&self.problem.objects).map(|(pose, spec)| {
             let draw = draws.object();
@@ -171,7 +191,7 @@ impl<'a> Execution<'a> {
                 *slot = bias;
             }
         }
-        Performance::begin(self, &objects, biases, (noise, draws), control).perform(run, cancel)
+        Performance::begin(self, &objects, biases, (noise, draws), control)
     }
 
     /// Is an object the same however it is turned?

@@ -1,5 +1,8 @@
 //! `darrt execute`: a plan in physics.
 
+mod mcap;
+mod page;
+
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
@@ -13,7 +16,7 @@ use super::{check, plan as planning};
 use crate::args::ExecuteOptions;
 use crate::bench::machine::cores;
 use crate::exit::{Exit, Failure};
-use crate::output::Output;
+use crate::output::{self, Output};
 use crate::progress::Bar;
 use crate::table;
 use darrt_task::plan_file::PlanFile;
@@ -48,6 +51,9 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     plan.check_complete().map_err(|flaw| refuse(&flaw))?;
     let robot = program.facts(&plan.problem).map_err(|error| refuse(&error))?;
     let execution = Execution::new(&plan, &robot).map_err(|error| refuse(&error))?;
+    let places = [&options.page, &options.mcap].map(|path| path.as_deref().map(output::writable).transpose());
+    let [page_place, mcap_place] = places;
+    let (page_place, mcap_place) = (page_place?, mcap_place?);
     let prediction = execution.predict(&noise, options.replan);
     if options.predict {
         let objects: Vec<_> = plan.problem.objects.iter().map(|object| object.name.as_str()).collect();
@@ -76,6 +82,22 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     } else if !options.quiet {
         output.print(&words(&runs, execution.duration_s(), &prediction))?;
     }
+    let shown = runs.runs.iter().find(|run| !run.is_success).or(runs.runs.first());
+    if let Some(shown) = shown.filter(|_| page_place.is_some() || mcap_place.is_some())
+        && let Some((report, recording)) = execution.record(&noise, (options.seed, shown.run), control, &cancel)
+    {
+        if let Some(place) = page_place {
+            output::write_file(&place, page::file(&plan, &robot, &report, &recording)?.into_bytes())?;
+            told(output, options, "page", &place)?;
+        }
+        if let Some(place) = mcap_place {
+            let bytes = mcap::file(&plan, &robot, &recording);
+            let bytes =
+                bytes.map_err(|error| Failure::new(Exit::CannotWrite, format!("{}: {error}", place.display())))?;
+            output::write_file(&place, bytes)?;
+            told(output, options, "recording", &place)?;
+        }
+    }
     if !runs.is_complete {
         let left = counted(count - runs.runs.len() as u64, "run");
         return Err(Failure::new(Exit::Interrupted, format!("{name}: interrupted, {left} left")));
@@ -86,6 +108,11 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     }
     let of = counted(count, "run");
     Err(Failure::new(Exit::NotSolved, format!("{name}: executed: {failed} of {of} failed")))
+}
+
+/// Says where something was written.
+fn told(output: &mut Output, options: &ExecuteOptions, what: &str, place: &Path) -> Result<(), Failure> {
+    if options.quiet || options.json { Ok(()) } else { output.print(&format!("{what}: {}", place.display())) }
 }
 
 /// The planner, for executions that look where everything is.
@@ -208,7 +235,7 @@ fn words(runs: &Runs, plan_s: f64, prediction: &Prediction) -> String {
 }
 
 /// One departure in a sentence.
-fn sentence(departure: &Departure) -> String {
+pub(super) fn sentence(departure: &Departure) -> String {
     let Departure { plan, step, primitive, time, cause, body, other, off_m, lean_deg, force_n } = departure;
     let other = other.as_ref().map_or_else(String::new, |other| format!(" and {other}"));
     let mut numbers = vec![format!("{:.1} mm", off_m * 1000.0), format!("{lean_deg:.1} degrees")];
