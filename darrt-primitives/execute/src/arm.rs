@@ -122,3 +122,69 @@ impl Arm {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test says what is wrong by panicking")]
+
+    use darrt_task::file_robot::FileRobot;
+    use darrt_task::problem_file::Robot as RobotSettings;
+    use darrt_task::robot::TaskRobot as _;
+    use nalgebra::{DVector, Translation3, UnitQuaternion, Vector3};
+
+    use super::*;
+
+    const BASE: [f64; 3] = [0.3, -0.2, 0.7];
+
+    fn arm() -> (Robot, Arm, Vec<f64>) {
+        let settings: RobotSettings = toml::from_str("model = \"panda-arm\"\nbase = [0.0, 0.0, 0.0]").unwrap();
+        let facts = FileRobot::facts(&settings).unwrap();
+        let robot = Robot::new(&facts).unwrap();
+        let arm = Arm::new(&robot, &facts).unwrap();
+        let mut joints = robot.tree.neutral();
+        for (variable, value) in robot.arm.iter().zip([0.2, 0.4, -0.3, -1.6, 0.3, 1.9, 0.5]) {
+            joints[*variable] = value;
+        }
+        (robot, arm, joints)
+    }
+
+    #[test]
+    fn small_errors_move_the_hand_as_the_matrix_says() {
+        let (robot, arm, joints) = arm();
+        let tool = Arm::world_from_tool(&robot, BASE, &joints);
+        let point = Point3::from(tool.translation.vector);
+        let matrix = arm.error_of_hand(&robot, BASE, &joints, &point);
+        let step = 1e-6;
+        for column in 0..matrix.ncols() {
+            let (mut base, mut moved) = (BASE, joints.clone());
+            match column.checked_sub(3) {
+                None => base[column] += step,
+                Some(joint) => moved[robot.arm[joint]] += step,
+            }
+            let now = Arm::world_from_tool(&robot, base, &moved);
+            let way = (now.translation.vector - tool.translation.vector) / step;
+            let turn = (now.rotation * tool.rotation.inverse()).scaled_axis() / step;
+            let wanted = DVector::from_vec(vec![way.x, way.y, turn.z]);
+            assert!((matrix.column(column) - wanted).norm() < 1e-4, "column {column}");
+        }
+    }
+
+    #[test]
+    fn a_hand_is_put_elsewhere_and_refuses_what_is_out_of_reach() {
+        let (robot, arm, joints) = arm();
+        let tool = Arm::world_from_tool(&robot, BASE, &joints);
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 0.05);
+        let target = Translation3::new(0.02, -0.03, 0.0) * tool;
+        let target = Isometry3::from_parts(target.translation, turn * tool.rotation);
+        let rest = vec![0.0; robot.arm.len()];
+        let offset = arm.reach(&robot, BASE, &joints, &target, &rest).unwrap();
+        let mut moved = joints.clone();
+        robot.arm.iter().zip(&offset).for_each(|(variable, by)| moved[*variable] += by);
+        let there = Arm::world_from_tool(&robot, BASE, &moved);
+        assert!((there.translation.vector - target.translation.vector).norm() <= REACHED.0);
+        assert!(there.rotation.angle_to(&target.rotation) <= REACHED.1);
+        assert!(offset.iter().all(|by| by.abs() < 0.2), "{offset:?}");
+        let far = Translation3::new(2.0, 0.0, 0.0) * tool;
+        assert!(arm.reach(&robot, BASE, &joints, &far, &rest).is_none());
+    }
+}

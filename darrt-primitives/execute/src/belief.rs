@@ -8,7 +8,8 @@
 //! # Sources
 //! - Filter, maps and gains: Thrun, Burgard, Fox, *Probabilistic Robotics* (2005), chapter 3.
 //! - Pushes: [`Funnel`], `darrt_primitives::push::settling`.
-//! - Closing: a grasp takes away what is off along the axis of the fingers (Mason, *The mechanics of manipulation*, 1985).
+//! - Closing: a grasp takes away what is off along the axis of the fingers (Mason, *The mechanics of manipulation*, 1985); pads turn
+//!   what they hold flush (measured, README).
 
 use darrt_primitives::push::settling::Funnel;
 use nalgebra::{
@@ -260,12 +261,14 @@ pub(crate) fn left_by_push(
 }
 
 /// What closing leaves of the error of an object against the hand: what is off along the axis of the fingers goes, as far as that
-/// lies level.
-pub(crate) fn left_by_closing(finger_axis: &Vector3<f64>) -> Matrix3<f64> {
+/// lies level. If it is the wall of something round that they close on, its middle beside the hand, the flat pads turn it until its
+/// wall lies flush, and what is off along the wall goes too.
+pub(crate) fn left_by_closing(finger_axis: &Vector3<f64>, is_round_wall: bool) -> Matrix3<f64> {
     let level = finger_axis.xy();
     let mut keep = Matrix3::identity();
-    let plane: Matrix2<f64> = Matrix2::identity() - level * level.transpose();
-    keep.fixed_view_mut::<2, 2>(0, 0).copy_from(&plane);
+    let gone: Matrix2<f64> = level * level.transpose();
+    let gone = if is_round_wall { Matrix2::identity() * level.norm_squared() } else { gone };
+    keep.fixed_view_mut::<2, 2>(0, 0).copy_from(&(Matrix2::identity() - gone));
     keep
 }
 
@@ -301,4 +304,134 @@ fn turn(yaw: f64) -> Matrix3<f64> {
 
 fn wrapped(angle: f64) -> f64 {
     darrt_primitives::kinematics::limit::wrap_to_pi(angle)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test says what is wrong by panicking")]
+
+    use darrt_primitives::push::Friction;
+    use darrt_primitives::push::limit_surface::PressureConstant;
+
+    use super::*;
+    use crate::noise::Draws;
+
+    const NOISE: NoiseModel = NoiseModel {
+        detection_m: 0.010,
+        detection_deg: 2.0,
+        base_m: 0.015,
+        base_deg: 1.0,
+        base_adds_up: false,
+        joint_bias_mrad: 4.0,
+        table_friction: 0.0,
+        finger_friction: 0.0,
+        mass: 0.0,
+    };
+
+    fn belief() -> Belief {
+        Belief::new(&NOISE, [0.0; 3], 2, &[Isometry3::translation(0.8, 0.1, 0.5)], vec![true])
+    }
+
+    fn sight_of(object: Option<usize>, at: [f64; 3]) -> Sight {
+        Sight { object, world_from_room: Point2::new(0.8, 0.1), base_from_body: at }
+    }
+
+    fn sigma(covariance: &Matrix3<f64>) -> f64 {
+        covariance[(0, 0)].sqrt()
+    }
+
+    #[test]
+    fn a_second_look_from_the_same_place_halves_the_variance() {
+        let mut belief = belief();
+        assert!((sigma(&belief.of_object(0)) - 0.010).abs() < 1e-12);
+        // Two detections of equal weight: half way between them.
+        assert!(!belief.see(&sight_of(Some(0), [0.808, 0.1, 0.0])));
+        assert!((sigma(&belief.of_object(0)) - 0.010 / 2.0_f64.sqrt()).abs() < 1e-9);
+        assert!((belief.objects[0].translation.x - 0.804).abs() < 1e-9);
+    }
+
+    #[test]
+    fn drives_and_furniture_tell_of_the_base() {
+        let mut belief = belief();
+        belief.drive([0.0; 3]);
+        assert!((sigma(&belief.of_base()) - 0.015).abs() < 1e-12);
+        // Straight ahead: 15 mm of the base against 10 mm of sight.
+        let ahead = Point2::new(0.8, 0.0);
+        let sight = Sight { object: None, world_from_room: ahead, base_from_body: [0.79, 0.0, 0.0] };
+        assert!(!belief.see(&sight));
+        let known = (0.015_f64.powi(-2) + 0.010_f64.powi(-2)).powf(-0.5);
+        assert!((sigma(&belief.of_base()) - known).abs() < 1e-9, "{}", sigma(&belief.of_base()));
+        // What is seen nearer than it should be: the base stands farther ahead.
+        assert!(belief.base[0] > 0.005 && belief.base[0] < 0.008, "{:?}", belief.base);
+    }
+
+    #[test]
+    fn what_is_somewhere_else_altogether_is_believed_at_once() {
+        let mut belief = belief();
+        assert!(belief.see(&sight_of(Some(0), [0.95, 0.1, 0.0])));
+        assert_eq!(belief.objects[0].translation.x, 0.95);
+        assert!((sigma(&belief.of_object(0)) - 0.010).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_held_goes_with_the_errors_of_the_hand() {
+        let mut belief = belief();
+        // A hand without joints that stands where the object is, 0.8 m ahead of the base.
+        let hand = DMatrix::from_row_slice(3, 5, &[1., 0., -0.1, 0., 0., 0., 1., 0.8, 0., 0., 0., 0., 1., 0., 0.]);
+        let before = belief.of_object(0);
+        belief.into_hand(0, &hand, &Matrix3::identity());
+        belief.out_of_hand(0, &hand, 0.0);
+        assert!((belief.of_object(0) - before).norm() < 1e-15, "nothing moves, nothing changes");
+        belief.into_hand(0, &hand, &Matrix3::identity());
+        belief.drive([0.0; 3]);
+        belief.out_of_hand(0, &hand, 0.0);
+        // y: what it was, the base, and its yaw at 0.8 m.
+        let yaw = 0.8 * 1.0_f64.to_radians();
+        let wanted = (0.010_f64.powi(2) + 0.015_f64.powi(2) + yaw * yaw).sqrt();
+        assert!((belief.of_object(0)[(1, 1)].sqrt() - wanted).abs() < 1e-9);
+    }
+
+    #[test]
+    fn two_fingers_take_away_what_they_funnel() {
+        let pressure = PressureConstant::uniform_disc(0.14).unwrap();
+        let funnel = Funnel::new(0.14, 0.08, pressure, Friction::new(0.3).unwrap()).unwrap();
+        // 10 mm are gone after 0.0601 m (the table in `settling`), and part of them before.
+        let long = left_by_push(Vector2::x(), 0.010, 0.061, Some(&funnel));
+        assert_eq!(long, Matrix3::zeros());
+        let short = left_by_push(Vector2::x(), 0.010, 0.03, Some(&funnel));
+        assert!(short[(0, 0)] == 0.0 && short[(1, 1)] > 0.2 && short[(1, 1)] < 0.9, "{short}");
+        // Upright fingers leave level errors alone, level ones take those along their axis away.
+        assert_eq!(left_by_closing(&Vector3::z(), true), Matrix3::identity());
+        let level = left_by_closing(&Vector3::y(), false);
+        assert_eq!((level[(0, 0)], level[(1, 1)]), (1.0, 0.0));
+        let wall = left_by_closing(&Vector3::y(), true);
+        assert_eq!((wall[(0, 0)], wall[(1, 1)]), (0.0, 0.0));
+    }
+
+    /// The errors that are left are as large as the covariance says.
+    #[test]
+    fn the_filter_is_as_sure_as_it_may_be() {
+        let (mut squares, mut expected, runs) = (0.0, 0.0, 400);
+        for run in 0..runs {
+            let mut draws = Draws::new(NOISE, 7, run);
+            let mut belief = belief();
+            let at = draws.object().at;
+            let truth = belief.objects[0].translation.vector.xy() + Vector2::new(at[0], at[1]);
+            let base = draws.drive([0.0; 3]);
+            belief.drive([0.0; 3]);
+            let world_from_base = crate::robot::world_from_base(base);
+            for _ in 0..3 {
+                let bodies = [(None, Vector2::new(0.8, 0.1)), (Some(0), truth)];
+                for (object, world) in bodies {
+                    let error = draws.sight();
+                    let seen = world_from_base.inverse() * Point3::new(world.x, world.y, 0.0);
+                    belief.see(&sight_of(object, [seen.x + error[0], seen.y + error[1], error[2] - base[2]]));
+                }
+            }
+            squares += (belief.objects[0].translation.vector.xy() - truth).norm_squared();
+            expected += belief.of_object(0).fixed_view::<2, 2>(0, 0).trace();
+        }
+        let ratio = (squares / expected).sqrt();
+        assert!((0.9..1.1).contains(&ratio), "{ratio}");
+    }
 }

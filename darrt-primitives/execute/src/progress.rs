@@ -4,10 +4,10 @@ use darrt_primitives::contract::HandUse;
 use darrt_primitives::push::Friction;
 use darrt_primitives::push::limit_surface::PressureConstant;
 use darrt_primitives::push::settling::Funnel;
-use nalgebra::{Isometry3, Matrix3, Point3, Vector2, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation2, Vector2, Vector3};
 
 use crate::arm::Arm;
-use crate::belief::{Belief, carried, left_by_closing, left_by_push, level_change, moved, yaw_of};
+use crate::belief::{Belief, left_by_closing, left_by_push, level_change, moved, yaw_of};
 use crate::course::Course;
 use crate::run::Execution;
 use crate::timeline::TimedStep;
@@ -94,7 +94,9 @@ pub(crate) fn advance(
         (contact.direction, contact.gap_m) = (Some(direction), gap_m(of, &begin.joints));
         left_by_push(direction, sigma, way.norm(), funnel.as_ref())
     } else if step.contract.hand == HandUse::Takes {
-        left_by_closing(&(begin.believed.rotation * Vector3::y()))
+        let radius = of.problem.objects.get(object).and_then(|object| object.shape.round_radius());
+        let is_wall = radius.is_some_and(|radius| tool_from_object.translation.y.abs() > radius / 2.0);
+        left_by_closing(&(begin.believed.rotation * Vector3::y()), is_wall)
     } else {
         Matrix3::identity()
     };
@@ -113,8 +115,8 @@ pub(crate) fn advance(
     let after = end.believed * tool_from_end;
     let about = Point3::from(after.translation.vector);
     // What is off turns with the hand.
-    let kept = carried(&Isometry3::translation(kept.x, kept.y, 0.0), &Point3::origin(), [0.0, 0.0, turned]);
-    let kept = [kept.translation.x, kept.translation.y, 0.0];
+    let kept = Rotation2::new(turned) * kept.xy();
+    let kept = [kept.x, kept.y, 0.0];
     if let Some(pose) = belief.objects.get_mut(object) {
         *pose = moved(&after, kept);
     }

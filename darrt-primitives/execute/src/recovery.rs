@@ -102,12 +102,7 @@ impl Performance<'_> {
         // To where another plan may begin.
         while !holds && at > 0 && !course.step(at - 1).is_some_and(|before| before.contract.is_free()) {
             at -= 1;
-            let step = course.step(at)?;
-            self.go_back(step, u64::MAX);
-        }
-        if self.stopped.is_some() {
-            self.stopped = stopped;
-            return None;
+            self.go_back(course.step(at)?, u64::MAX);
         }
         self.planned = course.before(at).to_vec();
         self.look(at);
@@ -117,6 +112,16 @@ impl Performance<'_> {
         if course.step(at).is_some_and(|step| self.is_too_far(at, step)) {
             self.stopped = stopped;
             return None;
+        }
+        // The base may stand where nothing can be done: it drives there once more.
+        let since = course.timeline.steps.get(..at).unwrap_or_default().iter().rev();
+        let since = since.take_while(|step| !step.contract.manipulates()).position(|step| step.contract.drives());
+        if let Some(back) = since.filter(|_| !course.step(index).is_some_and(|step| step.contract.drives())) {
+            for _ in 0..=back {
+                at -= 1;
+                self.go_back(course.step(at)?, u64::MAX);
+            }
+            self.planned = course.before(at).to_vec();
         }
         Some(at)
     }
