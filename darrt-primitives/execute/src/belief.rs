@@ -141,7 +141,7 @@ impl Belief {
     }
 
     /// An object is from now on off against the hand by `keep` of what it is, and no longer against the world.
-    pub(crate) fn into_hand(&mut self, object: usize, hand: &DMatrix<f64>, keep: &Matrix3<f64>) {
+    pub(crate) fn grip(&mut self, object: usize, hand: &DMatrix<f64>, keep: &Matrix3<f64>) {
         let mut map = DMatrix::identity(self.covariance.nrows(), self.covariance.nrows());
         let rows = DMatrix::from_column_slice(3, 3, keep.as_slice()) * self.difference(object, hand);
         map.view_mut((self.at(object), 0), (3, rows.ncols())).copy_from(&rows);
@@ -149,7 +149,7 @@ impl Belief {
     }
 
     /// The way back: the hand is elsewhere, and has turned by `yaw` since, with the object.
-    pub(crate) fn out_of_hand(&mut self, object: usize, hand: &DMatrix<f64>, yaw: f64) {
+    pub(crate) fn release(&mut self, object: usize, hand: &DMatrix<f64>, yaw: f64) {
         let size = self.covariance.nrows();
         let mut map = DMatrix::identity(size, size);
         let at = self.at(object);
@@ -379,12 +379,12 @@ mod tests {
         // A hand without joints that stands where the object is, 0.8 m ahead of the base.
         let hand = DMatrix::from_row_slice(3, 5, &[1., 0., -0.1, 0., 0., 0., 1., 0.8, 0., 0., 0., 0., 1., 0., 0.]);
         let before = belief.of_object(0);
-        belief.into_hand(0, &hand, &Matrix3::identity());
-        belief.out_of_hand(0, &hand, 0.0);
+        belief.grip(0, &hand, &Matrix3::identity());
+        belief.release(0, &hand, 0.0);
         assert!((belief.of_object(0) - before).norm() < 1e-15, "nothing moves, nothing changes");
-        belief.into_hand(0, &hand, &Matrix3::identity());
+        belief.grip(0, &hand, &Matrix3::identity());
         belief.drive([0.0; 3]);
-        belief.out_of_hand(0, &hand, 0.0);
+        belief.release(0, &hand, 0.0);
         // y: what it was, the base, and its yaw at 0.8 m.
         let yaw = 0.8 * 1.0_f64.to_radians();
         let wanted = (0.010_f64.powi(2) + 0.015_f64.powi(2) + yaw * yaw).sqrt();

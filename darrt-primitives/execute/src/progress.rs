@@ -100,7 +100,7 @@ pub(crate) fn advance(
     } else {
         Matrix3::identity()
     };
-    belief.into_hand(object, &hand, &keep);
+    belief.grip(object, &hand, &keep);
     if step.contract.drives() {
         belief.drive(course.timeline.at(step, step.end_s, &of.robot).base);
     }
@@ -121,7 +121,7 @@ pub(crate) fn advance(
         *pose = moved(&after, kept);
     }
     let hand = of.arm.error_of_hand(&of.robot, end.base, &end.joints, &about);
-    belief.out_of_hand(object, &hand, turned);
+    belief.release(object, &hand, turned);
     if step.contract.manipulates() {
         belief.contact(object);
     }
