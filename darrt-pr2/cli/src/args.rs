@@ -230,15 +230,19 @@ Examples:
   darrt execute plate3.plan.json                    once, in a world that is as the plan has it
   darrt execute plate3.plan.json --noise 1          100 times, with the errors of a real robot
   darrt execute plate3.plan.json --noise mine.toml  with errors of your own
+  darrt execute plate3.plan.json --noise 1 --replan closed loop: looks, corrects, plans anew
+  darrt execute plate3.plan.json --noise 1 --predict
+                                                    what to expect, without physics
   darrt execute --print-noise > mine.toml           the errors of a real robot, to copy and edit
 
-The plan is executed as it is, open loop. A run succeeds if every object ends at its goal, within the
+Without --replan the plan is executed as it is, open loop. A run succeeds if every object ends at its goal, within the
 tolerance of the problem, and nothing else was moved. The first departure from the plan is told as the
 cause of a failure. The same plan, noise and seed give the same runs with any number of threads.";
 
 /// Options of `darrt execute`.
 #[derive(Debug, Args)]
 #[command(after_help = EXECUTE_EXAMPLES)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of the command line")]
 pub struct ExecuteOptions {
     /// The plan file
     #[arg(required_unless_present = "print_noise")]
