@@ -1,7 +1,7 @@
 //! What to expect of an execution before it is tried: how far robot and objects may be off after every step, and how likely it is
 //! that the step succeeds all the same.
 //!
-//! The errors are those of [`belief`](crate::belief): linear maps of normal errors. Of each step those errors are held against what
+//! The errors are those of `belief`: linear maps of normal errors. Of each step they are held against what
 //! it bears:
 //!
 //! - A push needs the object between its fingers, P(|e| < gap / 2) sideways, and the hand must come down behind it, lengthwise
