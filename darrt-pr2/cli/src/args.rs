@@ -378,6 +378,9 @@ pub struct RobotCheckOptions {
     /// Draw no picture
     #[arg(long)]
     pub no_picture: bool,
+    /// Say of every pair of links whether it is checked, and why
+    #[arg(long)]
+    pub pairs: bool,
 }
 
 /// Options of `darrt robot new`.
@@ -389,6 +392,20 @@ pub struct RobotNewOptions {
     /// Write the robot file here [default: beside the description, .toml]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Where the package is that meshes are in (package://NAME/...), once for each [default: ROS_PACKAGE_PATH, AMENT_PREFIX_PATH,
+    /// and the folders above the description]
+    #[arg(long, value_name = "NAME=FOLDER", value_parser = package)]
+    pub package: Vec<(String, PathBuf)>,
+}
+
+/// A package and its folder.
+fn package(text: &str) -> Result<(String, PathBuf), String> {
+    let (name, folder) = text.split_once('=').ok_or("must be the name of a package, `=`, and its folder")?;
+    let path = PathBuf::from(folder);
+    if name.is_empty() || !path.is_dir() {
+        return Err(format!("there is no folder `{folder}` for the package `{name}`"));
+    }
+    Ok((name.to_owned(), path))
 }
 
 /// Options of `darrt schema`.

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use darrt_primitives::kinematics::RobotDescription;
+use darrt_primitives::kinematics::{MeshPlaces, RobotDescription};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::viewer::data::{JointKindData, PoseData, StepData, ViewerData};
 use darrt_task::viewer::{self, RobotModel};
@@ -177,7 +177,7 @@ fn any_robot_can_be_shown() {
     let urdf = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../darrt-primitives/tests/data/generic_arm.urdf");
     let description = RobotDescription::from_file(&urdf).unwrap();
     let last = description.links.last().unwrap().name.clone();
-    let robot = RobotModel::new(&description, &[], &last).unwrap();
+    let robot = RobotModel::new(&description, &MeshPlaces::default(), &last).unwrap();
     let problem = darrt_pr2::problems::builtin("bowl").unwrap();
     let geometry = problem.geometry().unwrap();
     let objects = problem.objects.iter().zip(&geometry.objects);
@@ -189,7 +189,12 @@ fn any_robot_can_be_shown() {
     let data = viewer::of_problem(&problem, &start, &robot).unwrap();
     assert_eq!(data.robot.links.len(), description.links.len());
     assert!(data.steps.is_empty() && !data.objects[0].goals.is_empty());
-    assert!(RobotModel::new(&description, &[], "no such link").unwrap_err().to_string().contains("no such link"));
+    assert!(
+        RobotModel::new(&description, &MeshPlaces::default(), "no such link")
+            .unwrap_err()
+            .to_string()
+            .contains("no such link")
+    );
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The robot: its links as solids, and its hand as a table of where the fingers are at which opening.
 
+use darrt_primitives::kinematics::link_bodies;
 use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
-use darrt_primitives::kinematics::{link_bodies, mesh_folders};
 use darrt_task::robot::RobotFacts;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rapier3d_f64::prelude::Pose;
@@ -67,7 +67,7 @@ impl Robot {
     pub(crate) fn new(facts: &RobotFacts) -> Result<Self, ExecuteError> {
         let description = &*facts.description;
         let tree = KinematicTree::new(description)?;
-        let bodies = link_bodies(description, &tree, &mesh_folders(&facts.mesh_folders))?;
+        let bodies = link_bodies(description, &tree, &facts.meshes.paths())?;
         let part = |body: &darrt_geom::Body| {
             let parts = body.parts.iter();
             parts.map(|part| solids::of_part(&body.name, &part.shape, &part.body_from_shape)).collect()

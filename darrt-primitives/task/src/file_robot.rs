@@ -14,6 +14,8 @@ mod load;
 mod opening;
 mod pairs;
 mod reach;
+mod sampled;
+mod semantic;
 pub mod shipped;
 mod task;
 mod travel;

@@ -3,11 +3,10 @@
 //! A planner moves a [`Manipulator`]; a judge must not trust the planner's code and gets [`RobotFacts`] instead: the
 //! description, and the names that say what is arm, hand and finger in it.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use darrt_primitives::contract::Contract;
-use darrt_primitives::kinematics::{RobotDescription, UrdfError};
+use darrt_primitives::kinematics::{MeshPlaces, RobotDescription, UrdfError};
 use darrt_primitives::manipulator::{Configuration, Manipulator};
 
 use crate::clock::MotionLimits;
@@ -89,7 +88,7 @@ pub struct RobotFacts {
     /// Links, joints and shapes.
     pub description: Arc<RobotDescription>,
     /// Where its meshes are looked for.
-    pub mesh_folders: Vec<PathBuf>,
+    pub meshes: MeshPlaces,
     /// The joints of the arm that manipulates, from the base outwards. The last one moves the hand.
     pub arm_joints: Vec<String>,
     /// The joint that opens the hand as it grows.

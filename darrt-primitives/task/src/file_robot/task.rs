@@ -76,7 +76,7 @@ impl TaskRobot for FileRobot {
             push_force_n: robot.push_force_n,
             motion: motion_limits(&loaded, &robot),
             is_bolted: file.base.kind != BaseKind::Planar,
-            mesh_folders: loaded.mesh_folders,
+            meshes: loaded.meshes,
             description: Arc::new(loaded.amended.description),
         })
     }

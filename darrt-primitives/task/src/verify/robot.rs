@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use darrt_primitives::kinematics::tree::{Drive, KinematicTree, LinkMotion};
-use darrt_primitives::kinematics::{JointLimit, link_bodies, mesh_folders};
+use darrt_primitives::kinematics::{JointLimit, link_bodies};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use super::refusal::{Refusal, RefusalKind};
@@ -82,7 +82,7 @@ impl Robot {
         };
         let description = &*facts.description;
         let tree = KinematicTree::new(description).map_err(|e| refuse(&e))?;
-        let bodies = link_bodies(description, &tree, &mesh_folders(&facts.mesh_folders)).map_err(|e| refuse(&e))?;
+        let bodies = link_bodies(description, &tree, &facts.meshes.paths()).map_err(|e| refuse(&e))?;
         let mut solids = Vec::new();
         for (link, body) in bodies.iter().enumerate() {
             for part in body.iter().flat_map(|body| &body.parts) {
