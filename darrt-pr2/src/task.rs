@@ -96,6 +96,7 @@ impl TaskRobot for Pr2 {
             at_rest: Side::BOTH.map(finger).into_iter().zip(open).collect(),
             self_pairs: pairs.collect(),
             is_bolted: false,
+            drives_along_heading: false,
             pad_length_m: gripper::PAD_LENGTH,
             grip_force_n: Gripper.grip_force_n(),
             payload_kg: PAYLOAD_KG,

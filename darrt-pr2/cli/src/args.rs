@@ -486,6 +486,9 @@ The same problem and seed give the same file. Every problem is valid and was sol
 pub struct GenerateOptions {
     /// Name of a built-in problem, or a problem file
     pub problem: String,
+    /// For this robot instead of the problem's: a robot file, or a name of `darrt robot list`
+    #[arg(long, value_name = "FILE|NAME")]
+    pub robot: Option<String>,
     /// Seeds from A to B - 1, or how many from 0 on: one problem each
     #[arg(long, value_name = "A..B", default_value = "1", value_parser = seeds, allow_hyphen_values = true)]
     pub seeds: Range<u64>,

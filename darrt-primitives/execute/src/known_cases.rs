@@ -180,6 +180,7 @@ fn hand(roll: f64, pitch: f64) -> Robot {
         payload_kg: 2.0,
         push_force_n: 30.0,
         is_bolted: false,
+        drives_along_heading: false,
         motion: MotionLimits::default(),
     })
     .unwrap()

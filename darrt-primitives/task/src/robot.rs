@@ -109,6 +109,8 @@ pub struct RobotFacts {
     pub self_pairs: Vec<[String; 2]>,
     /// Its base is bolted down: it never moves.
     pub is_bolted: bool,
+    /// Does the base move along its heading only, and turn on the spot?
+    pub drives_along_heading: bool,
     /// Length of a pad from the tip back, metres.
     pub pad_length_m: f64,
     /// Force of each finger on what it holds, newton.

@@ -94,8 +94,15 @@ pub enum BaseKind {
     Planar,
     /// It slides along a line in its frame: the line becomes the first joint of the arm.
     Rail,
-    /// It drives along its heading only, and turns on the spot.
+    /// It drives along its heading only, ahead and back, and turns on the spot.
     Differential,
+}
+
+impl BaseKind {
+    /// Does it drive on the floor?
+    pub fn drives(self) -> bool {
+        matches!(self, Self::Planar | Self::Differential)
+    }
 }
 
 /// `[base]`.

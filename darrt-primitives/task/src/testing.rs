@@ -96,6 +96,7 @@ impl TaskRobot for Pr2 {
             at_rest: facts.at_rest,
             self_pairs: facts.self_pairs,
             is_bolted: facts.is_bolted,
+            drives_along_heading: facts.drives_along_heading,
             pad_length_m: facts.pad_length_m,
             grip_force_n: facts.grip_force_n,
             payload_kg: facts.payload_kg,

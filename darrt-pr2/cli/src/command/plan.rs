@@ -27,7 +27,10 @@ use darrt_task::text::counted;
 /// # Errors
 /// Every end but a verified plan that is written, with its exit code.
 pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
-    let problem = options.safety.applied(opened(program, options, output)?, &options.problem)?;
+    let problem = options.safety.applied(
+        opened(program, (&options.problem, options.robot.as_ref()), options.quiet, output)?,
+        &options.problem,
+    )?;
     let files = Files::choose(options)?;
     let request = request(options, problem);
     let cancel = Cancel::new();
@@ -75,13 +78,21 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
 }
 
 /// The problem, with the robot that is asked for.
-fn opened(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<ProblemFile, Failure> {
-    let Some(robot) = &options.robot else { return Ok(program.open(&options.problem)?) };
-    let problem = program.problems().open(&options.problem)?;
-    let failed = |error: RobotError| Failure::input(located(&options.problem, &error.to_string()));
+///
+/// # Errors
+/// What cannot be read, or does not fit the robot.
+pub(super) fn opened(
+    program: &dyn Program,
+    (name, robot): (&str, Option<&String>),
+    quiet: bool,
+    output: &mut Output,
+) -> Result<ProblemFile, Failure> {
+    let Some(robot) = robot else { return Ok(program.open(name)?) };
+    let problem = program.problems().open(name)?;
+    let failed = |error: RobotError| Failure::input(located(name, &error.to_string()));
     let (problem, changes) = program.with_robot(problem, robot).map_err(failed)?;
-    program.check(&problem, &options.problem)?;
-    if !options.quiet {
+    program.check(&problem, name)?;
+    if !quiet {
         changes.iter().try_for_each(|change| output.print(&format!("{}: {change}", problem.name)))?;
     }
     Ok(problem)

@@ -56,7 +56,7 @@ const ATTRIBUTES: [(&str, &str, &str); 12] = [
 
 /// The text, with a declaration for every prefix that has none: old descriptions call the elements of a simulator by such
 /// (`<sensor:camera>`), which planning does not use.
-fn with_namespaces(text: &str) -> Cow<'_, str> {
+pub(super) fn with_namespaces(text: &str) -> Cow<'_, str> {
     let mut text = Cow::Borrowed(text);
     for _ in 0..MAX_NAMESPACES {
         let Err(roxmltree::Error::UnknownNamespace(prefix, _)) = Document::parse(&text) else { break };
@@ -85,7 +85,6 @@ fn behind_root_name(text: &str) -> Option<usize> {
 /// # Errors
 /// [`UrdfError::Syntax`] for a text that is no XML, [`UrdfError::Lacks`] for what is missing.
 pub(super) fn only(text: &str) -> Result<Needed, UrdfError> {
-    let text = &*with_namespaces(text);
     let document = Document::parse(text).map_err(|error| UrdfError::Syntax { message: error.to_string() })?;
     let mut bytes = text.as_bytes().to_vec();
     let mut seen = BTreeSet::new();

@@ -82,7 +82,7 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
             100.0 * found
         ));
     }
-    if let Some(broken) = laws(&robot) {
+    if let Some(broken) = laws(&loaded.with_all_pairs().robot(Limits::Soft, [0.0; 3])?) {
         odd.push(format!("{}: a law of robots does not hold: {broken}", loaded.source.name));
     }
     let reach_down = reach_down(&robot);

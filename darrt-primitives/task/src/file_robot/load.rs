@@ -114,6 +114,13 @@ impl Loaded {
         Some((Layout { tree, drivers, arm_links }, finger))
     }
 
+    /// The same with no pair of links left out: what the laws of robots are about.
+    pub(super) fn with_all_pairs(&self) -> Self {
+        let mut all = Self { semantic: None, ..self.clone() };
+        all.source.file.ignore.clear();
+        all
+    }
+
     /// The robot, its base at `base`.
     pub(super) fn robot(&self, kind: Limits, base: [f64; 3]) -> Result<FileRobot, RobotFileError> {
         self.built(kind, base, true)
@@ -157,7 +164,7 @@ impl Loaded {
         let tool_levers = levers_at(&at_tool, &[Point3::origin()]);
         let weights_m = tool_levers.arm.iter().map(|lever| (BENT * lever).max(LEAST_WEIGHT_M)).collect();
         let self_pairs = pairs::pairs((&self.source, self.semantic.as_ref()), tree, &numbers, &places, &links)?;
-        let drives = self.source.file.base.kind == BaseKind::Planar;
+        let drives = self.source.file.base.kind.drives();
         let ring = Ring::new(&chain, &limits, (!drives).then_some(base));
         let speeds = self.speeds(tree, &layout)?;
         let postures = self.postures(&limits)?;

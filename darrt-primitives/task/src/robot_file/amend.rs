@@ -229,11 +229,6 @@ pub(super) fn add_fixed(
 /// Puts the description on its base: below the root come a rail, of which this is the joint, and the place of the base.
 fn stand(file: &RobotFile, description: &mut RobotDescription) -> Result<Option<String>, Fault> {
     let base = &file.base;
-    if base.kind == BaseKind::Differential {
-        let why = "is \"differential\", which is not planned with yet: such a base turns and drives along its heading only, and ways \
-                   of the base here go in any direction; \"fixed\", \"planar\" and \"rail\" are";
-        return Err(Fault::new("base.kind", why));
-    }
     let mut root_from_old = pose(base.xyz, base.rpy);
     let mut joint = None;
     let is_rail = base.kind == BaseKind::Rail;

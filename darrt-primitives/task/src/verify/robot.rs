@@ -57,6 +57,8 @@ pub(super) struct Robot {
     pub(super) gap_rate: f64,
     /// The base never moves.
     pub(super) is_bolted: bool,
+    /// It moves along its heading only, and turns on the spot.
+    pub(super) drives_along_heading: bool,
     /// Links that move with the manipulating arm or its fingers, in ascending order.
     arm_links: Vec<usize>,
     pub(super) strength: Strength,
@@ -136,6 +138,7 @@ impl Robot {
             finger_joint,
             gap_rate,
             is_bolted: facts.is_bolted,
+            drives_along_heading: facts.drives_along_heading,
             arm_links,
             strength,
         })

@@ -7,7 +7,7 @@ use darrt_primitives::kinematics::{JointLimit, RobotDescription};
 use nalgebra::Isometry3;
 use rand::RngExt as _;
 
-use super::super::semantic::Semantic;
+use super::super::semantic::{Disabled, Semantic};
 use super::super::travel::corners;
 use super::hand::variable_of;
 
@@ -15,7 +15,10 @@ use super::hand::variable_of;
 const LEAST_JOINTS: usize = 5;
 const MOST_JOINTS: usize = 7;
 /// Postures that are tried.
-const DRAWS: usize = 400;
+const DRAWS: usize = 300;
+/// Small changes of the best of them that are tried, and how large, radians.
+const STEPS: usize = 200;
+const STEP_RAD: f64 = 0.3;
 /// A pair of links that touches in so large a share of them stands in each other's shapes.
 const JOINED: f64 = 0.9;
 /// How far the limb keeps from the rest of the robot, metres.
@@ -60,7 +63,8 @@ pub(super) fn limbs(
             row.iter().filter_map(|variable| Some(tree.variables().get(*variable)?.name.to_string())).collect();
         let states = semantic.iter().flat_map(|semantic| semantic.states(description, &names));
         let states: Vec<_> = states.map(|(name, values)| (name.to_owned(), values)).collect();
-        let limb = Row { tree, bodies, variables: &row };
+        let disabled = semantic.map_or(&[][..], |semantic| &semantic.disabled);
+        let limb = Row { tree, bodies, variables: &row, disabled };
         let Some((chosen, state)) = limb.tucked(&values, &states, &mut rng) else { continue };
         for (variable, value) in row.iter().zip(&chosen) {
             if let Some(slot) = values.get_mut(*variable) {
@@ -111,6 +115,8 @@ struct Row<'a> {
     tree: &'a KinematicTree,
     bodies: &'a [Option<Body>],
     variables: &'a [usize],
+    /// Pairs that the SRDF does not check.
+    disabled: &'a [Disabled],
 }
 
 impl Row<'_> {
@@ -133,19 +139,44 @@ impl Row<'_> {
         let drawn = |_| (limits.iter().map(|limit| draw(limit, rng)).collect(), None);
         let tried: Vec<(Vec<f64>, Option<String>)> = given.chain((0..DRAWS).map(drawn)).collect();
         let seen: Vec<_> = tried.iter().filter_map(|(values, _)| self.seen(rest, values, &mine, &others)).collect();
-        // Pairs that touch nearly always are joined.
-        let pairs = seen.first()?.1.len();
-        let joined = |pair: usize| {
-            let touching = seen.iter().filter(|(_, near)| near.get(pair).is_some_and(|near| *near)).count();
-            touching as f64 >= JOINED * seen.len() as f64
+        // Pairs that touch nearly always are joined, and so are those that the SRDF does not check.
+        let name = |link: usize| self.tree.link_names().get(link).map_or("", |name| &**name);
+        let is_disabled = |a: usize, b: usize| {
+            let is_it = |[first, second]: &[String; 2]| {
+                [name(a), name(b)] == [first, second] || [name(b), name(a)] == [first, second]
+            };
+            self.disabled.iter().any(|pair| is_it(&pair.links))
         };
-        let joined: Vec<bool> = (0..pairs).map(joined).collect();
+        let named = mine.iter().flat_map(|a| others.iter().map(move |b| (*a, *b)));
+        let joined: Vec<bool> = named
+            .enumerate()
+            .map(|(pair, (a, b))| {
+                let touching = seen.iter().filter(|(_, near)| near.get(pair).is_some_and(|near| *near)).count();
+                touching as f64 >= JOINED * seen.len() as f64 || is_disabled(a, b)
+            })
+            .collect();
         let is_free = |near: &[bool]| near.iter().zip(&joined).all(|(near, joined)| !near || *joined);
         let mut free: Vec<_> = tried.iter().zip(&seen).filter(|(_, (_, near))| is_free(near)).collect();
-        // What has a name goes first, if it is no farther out than what was drawn mostly is.
         free.sort_by(|(_, (a, _)), (_, (b, _))| a.total_cmp(b));
+        // What has a name goes first, if it is no farther out than what was drawn mostly is.
         let named = free.iter().take(free.len().div_ceil(4)).find(|((_, name), _)| name.is_some());
-        named.or(free.first()).map(|(tried, _)| (*tried).clone())
+        if let Some((named, _)) = named {
+            return Some((*named).clone());
+        }
+        let ((first, _), (reach_m, _)) = free.first()?;
+        let (mut best, mut best_m) = (first.clone(), *reach_m);
+        for _ in 0..STEPS {
+            let moved = best.iter().zip(&limits).map(|(value, limit)| {
+                let value = value + rng.random_range(-STEP_RAD..STEP_RAD);
+                if limit.is_unlimited() { value } else { value.clamp(limit.lower, limit.upper) }
+            });
+            let moved: Vec<f64> = moved.collect();
+            let Some((reach_m, near)) = self.seen(rest, &moved, &mine, &others) else { continue };
+            if reach_m < best_m && is_free(&near) {
+                (best, best_m) = (moved, reach_m);
+            }
+        }
+        Some((best, None))
     }
 
     /// How far the limb reaches from the middle of the robot, and which of its links are near which other ones.
