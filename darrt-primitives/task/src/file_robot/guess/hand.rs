@@ -11,6 +11,8 @@ pub(super) const BEHIND_TIPS_M: f64 = 0.02;
 /// Longest pad that is guessed, metres, and its share of the finger.
 const PAD_M: f64 = 0.03;
 const PAD_SHARE: f64 = 0.5;
+/// The pads are so far from the origin of a hand that lies behind them, metres.
+const FINGER_M: f64 = 0.02;
 /// How far pads may turn, radians, and how far ends are the same, metres.
 const PARALLEL_RAD: f64 = 1e-6;
 const SAME_M: f64 = 1e-6;
@@ -145,7 +147,18 @@ fn describe(
     let y = apart.map(|x| if x.abs() == apart.amax() { x.signum() } else { 0.0 });
     // They reach out along that of the others along which they are farthest from the hand's own origin.
     let middle = (centre(a) + centre(b)) / 2.0;
-    let out = middle - y * middle.dot(&y);
+    // Where that is between the pads, from where the last joint before it is.
+    let middle_from_origin = middle - y * middle.dot(&y);
+    let out = if middle_from_origin.amax() >= FINGER_M {
+        middle_from_origin
+    } else {
+        let mut wrist = hand;
+        while variable_of(tree, wrist).is_none() {
+            wrist = tree.parent(wrist)?;
+        }
+        let from_wrist = middle - (hand_from_world * poses.get(wrist)?).translation.vector;
+        from_wrist - y * from_wrist.dot(&y)
+    };
     let x = out.map(|v| if v.abs() == out.amax() && v != 0.0 { v.signum() } else { 0.0 });
     if (x.norm() - 1.0).abs() > 1e-9 || (y.norm() - 1.0).abs() > 1e-9 {
         return None;

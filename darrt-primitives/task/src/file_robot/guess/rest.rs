@@ -21,6 +21,8 @@ const STEPS: usize = 200;
 const STEP_RAD: f64 = 0.3;
 /// A pair of links that touches in so large a share of them stands in each other's shapes.
 const JOINED: f64 = 0.9;
+/// Values stay so far within the limits, rad.
+const ROUNDED: f64 = 1e-5;
 /// How far the limb keeps from the rest of the robot, metres.
 const APART_M: f64 = 0.01;
 
@@ -133,7 +135,12 @@ impl Row<'_> {
             (0..self.tree.link_count()).filter(has_shape).partition(|link| is_below(self.tree, *link, first));
         let limits: Option<Vec<JointLimit>> =
             self.variables.iter().map(|variable| Some(self.tree.variables().get(*variable)?.soft_limit)).collect();
-        let limits = limits?;
+        // What is written is rounded.
+        let inside = |limit: JointLimit| {
+            let is_wide = limit.lower.is_finite() && limit.upper - limit.lower > 4.0 * ROUNDED;
+            if is_wide { JointLimit::new(limit.lower + ROUNDED, limit.upper - ROUNDED) } else { limit }
+        };
+        let limits: Vec<JointLimit> = limits?.into_iter().map(inside).collect();
         let given = states.iter().map(|(name, values)| (values.clone(), Some(name.clone())));
         let given = given.filter(|(values, _)| values.iter().zip(&limits).all(|(value, limit)| limit.contains(*value)));
         let drawn = |_| (limits.iter().map(|limit| draw(limit, rng)).collect(), None);
