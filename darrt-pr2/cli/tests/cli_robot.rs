@@ -134,7 +134,7 @@ fn what_is_wrong_with_a_robot_file_has_its_line() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (from, to, why) in [
-        ("kind = \"planar\"", "kind = \"differential\"", "is \"differential\", which is not planned with yet"),
+        ("kind = \"planar\"", "kind = \"diferential\"", "did you mean `differential`?"),
         ("to = \"hand\"", "to = \"hnad\"", "did you mean `hand`?"),
         ("from = \"wagon\"", "from = \"forearm\"", "is moved by 3 joints"),
         ("joint = \"left_jaw\"", "joint = \"right_jaw\"", "follows `left_jaw`: name that one"),
