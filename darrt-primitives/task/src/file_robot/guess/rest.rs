@@ -52,9 +52,8 @@ pub(super) fn limbs(
         // Of those that begin alike the longest.
         match rows.iter_mut().find(|known| known.first() == row.first()) {
             Some(known) if known.len() < row.len() => *known = row,
-            Some(_) => {}
             None if row.len() >= LEAST_JOINTS => rows.push(row),
-            None => {}
+            Some(_) | None => {}
         }
     }
     let mut values = tree.neutral();
