@@ -38,6 +38,7 @@ pub mod plan;
 pub mod primitive;
 pub mod problem;
 pub mod random;
+pub mod record;
 pub mod reroute;
 pub mod sample;
 pub mod search;

@@ -77,7 +77,11 @@ pub struct Darrt<'p, D: Domain> {
     node_limit: usize,
     goal_sample: Option<PartialState<D>>,
     nearest_to_goal: f64,
+    /// The state that is so near.
+    nearest: Option<State<D>>,
     is_part: bool,
+    /// Number of the node that was extended last; see [`Tree::births`].
+    extended: Option<u32>,
 }
 
 // Not derived: a sampler is not printable.
@@ -137,7 +141,9 @@ impl<'p, D: Domain> Darrt<'p, D> {
             node_limit: node_limit.min(Tree::<D>::MAX_NODES),
             goal_sample,
             nearest_to_goal: f64::INFINITY,
+            nearest: None,
             is_part: false,
+            extended: None,
         };
         darrt.note_distance_to_goal(problem.start());
         darrt
@@ -186,6 +192,7 @@ impl<'p, D: Domain> Darrt<'p, D> {
         }
         let (is_met, buckets) = (extension.is_met, extension.buckets.clone());
         self.tree.penalise(t, self.strategy.try_penalty_m);
+        self.extended = self.tree.births().get(t.index()).copied();
         let step = self.absorb(t, extension);
         self.accounts.count(&buckets, step.added, is_met, step.blame.as_ref());
         if let Some((removed, blame)) = &step.withdrawn {
@@ -270,7 +277,9 @@ impl<'p, D: Domain> Darrt<'p, D> {
     fn note_distance_to_goal(&mut self, state: &State<D>) {
         if let Some(goal) = &self.goal_sample {
             let d = self.strategy.distance.distance(self.problem.domain(), state, goal);
-            self.nearest_to_goal = self.nearest_to_goal.min(d);
+            if d < self.nearest_to_goal {
+                (self.nearest_to_goal, self.nearest) = (d, Some(state.clone()));
+            }
         }
     }
 

@@ -9,6 +9,7 @@
 //! | [`solve`] | Algorithm 1, until the first solution |
 //! | [`solve_with`], one [`Member`] | another [`Algorithm`] |
 //! | [`solve_with`], several members | a portfolio: the attempts take the members in turn |
+//! | [`solve_recorded`] | a [`Recorder`] is told how the trees grow |
 //! | [`solve_with`], [`Until::BudgetEnds`] | anytime: attempts go on, and the cheapest solution is the result |
 
 use std::cmp::Ordering;
@@ -23,8 +24,11 @@ use crate::observe::accounts::Accounts;
 use crate::observe::{Event, Observer};
 use crate::plan::Plan;
 use crate::problem::Problem;
+use crate::record::Recorder;
 use crate::search::part::best_of;
 use crate::search::{Algorithm, Part, Planner, Start, Strategy};
+use crate::state::State;
+use crate::validity::Blame;
 use crate::verify::{Refusal, Solution};
 
 /// How [`solve`] works.
@@ -125,6 +129,8 @@ pub struct Outcome<D: Domain> {
     pub restarts: u64,
     /// Metres from the goal to the nearest state found.
     pub nearest_to_goal: f64,
+    /// The state that is so near; of equally near ones that of the lowest attempt. No motion to it need be free as a whole.
+    pub nearest: Option<State<D>>,
     /// Time used. The only field that differs from run to run.
     pub elapsed: std::time::Duration,
     /// The last refusal of the verifier, if it refused any plan.
@@ -145,6 +151,7 @@ impl<D: Domain> fmt::Debug for Outcome<D> {
             .field("nodes", &self.nodes)
             .field("restarts", &self.restarts)
             .field("nearest_to_goal", &self.nearest_to_goal)
+            .field("nearest", &self.nearest)
             .field("elapsed", &self.elapsed)
             .field("last_refusal", &self.last_refusal)
             .field("part", &self.part)
@@ -161,6 +168,7 @@ struct Attempt<D: Domain> {
     iterations: u64,
     nodes: usize,
     nearest_to_goal: f64,
+    nearest: Option<State<D>>,
     last_refusal: Option<String>,
     parts: Vec<Part<D>>,
 }
@@ -180,6 +188,7 @@ struct Shared<'a, D: Domain> {
     /// Set by an observer; the caller's own token is not touched.
     halt: Cancel,
     observer: Mutex<&'a mut dyn Observer>,
+    recorder: Option<Mutex<&'a mut dyn Recorder<D>>>,
     /// The number of the next attempt to be taken by a thread.
     next: AtomicU64,
     /// The lowest attempt that has solved; attempts above it are pointless.
@@ -207,6 +216,18 @@ pub fn solve_with<D: Domain>(
     options: &SolveOptions,
     observer: &mut dyn Observer,
 ) -> Outcome<D> {
+    solve_recorded(problem, members, until, options, observer, None)
+}
+
+/// [`solve_with`], telling `recorder` of everything that the trees gain and lose. The outcome is the same.
+pub fn solve_recorded<'a, D: Domain>(
+    problem: &'a Problem<D>,
+    members: &'a [Member<'a, D>],
+    until: Until,
+    options: &'a SolveOptions,
+    observer: &'a mut dyn Observer,
+    recorder: Option<&'a mut dyn Recorder<D>>,
+) -> Outcome<D> {
     let shared = Shared {
         problem,
         members,
@@ -215,6 +236,7 @@ pub fn solve_with<D: Domain>(
         clock: Clock::start(&options.budget),
         halt: Cancel::new(),
         observer: Mutex::new(observer),
+        recorder: recorder.map(Mutex::new),
         next: AtomicU64::new(0),
         solved: AtomicU64::new(u64::MAX),
         done: Mutex::new(Vec::new()),
@@ -316,6 +338,10 @@ impl<D: Domain> Shared<'_, D> {
         let mut planner = algorithm.planner(self.problem, strategy, start);
         let mut found = Found { solution: None, last_refusal: None };
         self.tell(&Event::AttemptStarted { attempt: number });
+        if self.recorder.is_some() {
+            planner.keep_track();
+            self.record(number, &*planner, None);
+        }
         match planner.prove_start() {
             Some(Ok(solution)) => found.solution = Some(solution),
             Some(Err(refusal)) => found.last_refusal = Some(self.tell_refusal(number, &refusal)),
@@ -338,6 +364,7 @@ impl<D: Domain> Shared<'_, D> {
             iterations: planner.iteration(),
             nodes: planner.nodes(),
             nearest_to_goal: planner.nearest_to_goal(),
+            nearest: planner.nearest().cloned(),
             accounts: planner.accounts(),
             last_refusal: found.last_refusal,
         })
@@ -365,6 +392,9 @@ impl<D: Domain> Shared<'_, D> {
                 nearest_to_goal: planner.nearest_to_goal(),
                 blame: step.blame.as_ref(),
             });
+            if self.recorder.is_some() {
+                self.record(number, planner, step.blame.as_ref().or(step.withdrawn.as_ref().map(|(_, blame)| blame)));
+            }
             if let Some(refusal) = step.refusal {
                 found.last_refusal = Some(self.tell_refusal(number, &refusal));
             }
@@ -375,6 +405,14 @@ impl<D: Domain> Shared<'_, D> {
             if let Some(stop) = step.stop {
                 return stop;
             }
+        }
+    }
+
+    fn record(&self, attempt: u64, planner: &(dyn Planner<D> + '_), blame: Option<&Blame>) {
+        let (Some(recorder), Some(growth)) = (&self.recorder, planner.growth()) else { return };
+        // A recorder that has panicked has nothing more to be told.
+        if let Ok(mut recorder) = recorder.lock() {
+            recorder.on_growth(attempt, planner.iteration(), &growth, blame);
         }
     }
 
@@ -397,6 +435,7 @@ impl<D: Domain> Shared<'_, D> {
             nodes: 0,
             restarts: 0,
             nearest_to_goal: f64::INFINITY,
+            nearest: None,
             elapsed,
             last_refusal: None,
             part: None,
@@ -411,7 +450,9 @@ impl<D: Domain> Shared<'_, D> {
             outcome.iterations += attempt.iterations;
             outcome.nodes = outcome.nodes.max(attempt.nodes);
             outcome.restarts = attempt.number;
-            outcome.nearest_to_goal = outcome.nearest_to_goal.min(attempt.nearest_to_goal);
+            if attempt.nearest_to_goal < outcome.nearest_to_goal {
+                (outcome.nearest_to_goal, outcome.nearest) = (attempt.nearest_to_goal, attempt.nearest);
+            }
             outcome.last_refusal = attempt.last_refusal.or(outcome.last_refusal);
             outcome.stop = attempt.stop;
             parts.extend(attempt.parts);

@@ -88,6 +88,17 @@ pub struct Tree<D: Domain> {
     penalties_m: Vec<f64>,
     /// What bounds on distances are reckoned from; `None` since a penalty was negative or no number.
     mirrors: Option<Mirrors>,
+    /// For whoever records what becomes of it; `None` if nobody does.
+    births: Option<Births>,
+}
+
+/// A number for each node, which it keeps while nodes before it are taken back.
+#[derive(Debug, Clone, Default)]
+struct Births {
+    /// By node.
+    of: Vec<u32>,
+    /// The number of the next node.
+    next: u32,
 }
 
 impl<D: Domain> Tree<D> {
@@ -97,7 +108,8 @@ impl<D: Domain> Tree<D> {
     /// The tree that holds only the start.
     pub fn rooted_at(m: &D, start: State<D>) -> Self {
         let mirrors = Some(Mirrors::new(m, &start.robot));
-        let mut tree = Self { nodes: Vec::new(), placements: Vec::new(), penalties_m: Vec::new(), mirrors };
+        let mut tree =
+            Self { nodes: Vec::new(), placements: Vec::new(), penalties_m: Vec::new(), mirrors, births: None };
         tree.open_placement();
         tree.push(m, start, None, 0);
         tree
@@ -127,6 +139,10 @@ impl<D: Domain> Tree<D> {
         if let Some(mirrors) = &mut self.mirrors {
             mirrors.push(m, &state, working_point, placement, &self.penalties_m);
         }
+        if let Some(births) = &mut self.births {
+            births.of.push(births.next);
+            births.next = births.next.saturating_add(1);
+        }
         let id = NodeId::at(self.nodes.len());
         let before = self.placements.get_mut(placement as usize).and_then(|p| {
             p.count += 1;
@@ -146,6 +162,9 @@ impl<D: Domain> Tree<D> {
             placement.last = node.before;
             placement.count -= 1;
         }
+        if let Some(births) = &mut self.births {
+            births.of.pop();
+        }
         for mirror in self.mirrors.iter_mut().flat_map(Mirrors::all) {
             mirror.pop(&self.penalties_m);
         }
@@ -163,6 +182,7 @@ impl<D: Domain> Tree<D> {
         let Some(root) = self.node(Self::ROOT).map(|root| root.state.clone()) else { return 0 };
         let old = std::mem::replace(self, Self::rooted_at(m, root));
         let has_mirrors = old.mirrors.is_some();
+        let births = old.births;
         // By old index: the new id; `None` for what is gone. Parents come before their children.
         let mut kept = vec![Some(Self::ROOT)];
         let before = old.nodes.len();
@@ -188,6 +208,10 @@ impl<D: Domain> Tree<D> {
         if !has_mirrors {
             self.mirrors = None;
         }
+        self.births = births.map(|births| {
+            let all = births.of.iter().zip(&kept).filter(|(_, id)| id.is_some());
+            Births { of: all.map(|(birth, _)| *birth).collect(), next: births.next }
+        });
         before - self.nodes.len()
     }
 
@@ -232,6 +256,18 @@ impl<D: Domain> Tree<D> {
         self.penalties_m.get(placement as usize).copied().unwrap_or(0.0)
     }
 
+    /// Numbers the nodes from now on, in the order in which they come, the present ones first.
+    pub(crate) fn number_births(&mut self) {
+        let count = u32::try_from(self.nodes.len()).unwrap_or(u32::MAX);
+        self.births = Some(Births { of: (0..count).collect(), next: count });
+    }
+
+    /// By node, in the order of insertion: its number among all that the tree ever had. Empty unless somebody
+    /// [records](crate::record::Recorder) the search.
+    pub fn births(&self) -> &[u32] {
+        self.births.as_ref().map_or(&[], |births| &births.of)
+    }
+
     pub(crate) fn mirrors(&self) -> Option<&Mirrors> {
         self.mirrors.as_ref()
     }
@@ -258,6 +294,11 @@ impl<D: Domain> Tree<D> {
     /// Never true: a tree has a root.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
+    }
+
+    /// The nodes from this position in the order of insertion on.
+    pub fn since(&self, first: usize) -> impl Iterator<Item = &Node<D>> {
+        self.nodes.iter().skip(first)
     }
 
     /// All nodes in the order of insertion.

@@ -32,6 +32,9 @@ impl PlacedBox {
     }
 }
 
+/// Centre and radius, metres.
+type Ball = (Vector3<f64>, f64);
+
 /// [`LANES`] boxes, transposed.
 #[derive(Debug, Clone, Copy)]
 struct Block {
@@ -40,7 +43,7 @@ struct Block {
     axes: [[[f64; LANES]; 3]; 3],
     half: [[f64; LANES]; 3],
     /// A ball around all of them.
-    ball: (Vector3<f64>, f64),
+    ball: Ball,
 }
 
 impl Block {
@@ -52,7 +55,7 @@ impl Block {
     };
 
     /// A ball around the boxes.
-    fn ball_around(boxes: &[PlacedBox]) -> (Vector3<f64>, f64) {
+    fn ball_around(boxes: &[PlacedBox]) -> Ball {
         let centre = boxes.iter().map(|placed| placed.centre).sum::<Vector3<f64>>() / boxes.len() as f64;
         let reach = |placed: &PlacedBox| (placed.centre - centre).norm() + placed.half.norm();
         (centre, boxes.iter().map(reach).fold(0.0, f64::max) * (1.0 + 1e-12))
@@ -93,8 +96,55 @@ impl Block {
     }
 }
 
+/// Blocks per group.
+const FAN: usize = 8;
+/// Boxes up to here are looked at in the order given: a list so short is looked through as fast as a tree of it.
+const FEW: usize = 128;
+
+/// An order of the boxes in which neighbours are near each other, [`LANES`] of them and [`FAN`] times as many and so on
+/// together; that of the list itself if they are few.
+pub(crate) fn by_place(boxes: &[PlacedBox]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..boxes.len()).collect();
+    if boxes.len() > FEW {
+        halve(&mut order, boxes);
+    }
+    order
+}
+
+/// Halves a list across its longest side until what is left is one block. Halves are whole blocks or groups of them, so that
+/// only the last one of all is not full.
+fn halve(order: &mut [usize], boxes: &[PlacedBox]) {
+    if order.len() <= LANES {
+        return;
+    }
+    let centres = || order.iter().filter_map(|&i| boxes.get(i)).map(|placed| placed.centre);
+    let low = centres().fold(Vector3::repeat(f64::INFINITY), |low, centre| low.inf(&centre));
+    let high = centres().fold(Vector3::repeat(f64::NEG_INFINITY), |high, centre| high.sup(&centre));
+    let longest = (high - low).imax();
+    order.sort_by(|&i, &j| boxes[i].centre[longest].total_cmp(&boxes[j].centre[longest]).then(i.cmp(&j)));
+    let mut whole = LANES;
+    while whole * FAN < order.len() {
+        whole *= FAN;
+    }
+    let middle = (order.len() / 2).div_ceil(whole) * whole;
+    let (first, second) = order.split_at_mut(middle.min(order.len()));
+    if second.is_empty() {
+        return;
+    }
+    halve(first, boxes);
+    halve(second, boxes);
+}
+
+/// A ball around some of the balls.
+fn ball_around_balls(balls: &[Ball]) -> Ball {
+    let centre = balls.iter().map(|(centre, _)| centre).sum::<Vector3<f64>>() / balls.len() as f64;
+    let reach = |(other, radius): &Ball| (other - centre).norm() + radius;
+    (centre, balls.iter().map(reach).fold(0.0, f64::max) * (1.0 + 1e-12))
+}
+
 /// The search of [`BoxBatch::near`], compiled for every kind of processor.
 struct Near<'a> {
+    levels: Option<&'a [Vec<Ball>; 2]>,
     blocks: &'a [Block],
     point: &'a Vector3<f64>,
     reach: f64,
@@ -107,26 +157,63 @@ impl WithSimd for Near<'_> {
     #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let limit = self.reach * self.reach;
-        for (number, block) in self.blocks.iter().enumerate() {
-            // OPTIMIZATION: what stands together is registered together, and mostly it is far away together.
-            let (centre, radius) = &block.ball;
-            let apart = self.reach + radius;
-            if (self.point - centre).norm_squared() > apart * apart {
-                continue;
-            }
-            let squared = block.squared(self.point);
-            // Written so that a NaN is near.
-            let nearest = squared.iter().fold(f64::INFINITY, |least, s| if *s >= least { least } else { *s });
-            if nearest >= limit {
-                continue;
-            }
-            for (lane, squared) in squared.into_iter().enumerate() {
-                let is_far = squared >= limit;
-                if !is_far {
-                    self.out.push(NearBox { index: number * LANES + lane, distance: squared.sqrt() });
-                }
-            }
+        let Self { levels, blocks, point, reach, out } = self;
+        match levels {
+            None => blocks.iter().enumerate().for_each(|(number, block)| look(block, number, point, reach, out)),
+            Some([groups, wholes]) => visit(wholes, 0..wholes.len(), point, reach, |whole| {
+                let of_whole = whole * FAN..((whole + 1) * FAN).min(groups.len());
+                visit(groups, of_whole, point, reach, |group| {
+                    let from = group * FAN;
+                    for (number, block) in (from..).zip(blocks.iter().skip(from).take(FAN)) {
+                        look(block, number, point, reach, out);
+                    }
+                });
+            }),
+        }
+    }
+}
+
+/// Visits those of the balls that reach as near.
+#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
+#[inline(always)]
+fn visit(
+    balls: &[Ball],
+    range: std::ops::Range<usize>,
+    point: &Vector3<f64>,
+    reach: f64,
+    mut visit: impl FnMut(usize),
+) {
+    for (number, (centre, radius)) in range.clone().zip(balls.get(range).unwrap_or_default()) {
+        let apart = reach + radius;
+        // Written so that a NaN is near.
+        let is_far = (point - centre).norm_squared() > apart * apart;
+        if !is_far {
+            visit(number);
+        }
+    }
+}
+
+/// Looks at the boxes of a block.
+#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
+#[inline(always)]
+fn look(block: &Block, number: usize, point: &Vector3<f64>, reach: f64, out: &mut Vec<NearBox>) {
+    // OPTIMIZATION: what stands together is registered together, and mostly it is far away together.
+    let (centre, radius) = &block.ball;
+    let apart = reach + radius;
+    if (point - centre).norm_squared() > apart * apart {
+        return;
+    }
+    let limit = reach * reach;
+    let squared = block.squared(point);
+    // Written so that a NaN is near.
+    let nearest = squared.iter().fold(f64::INFINITY, |least, s| if *s >= least { least } else { *s });
+    if nearest >= limit {
+        return;
+    }
+    for (lane, squared) in squared.into_iter().enumerate() {
+        let is_far = squared >= limit;
+        if !is_far {
+            out.push(NearBox { index: number * LANES + lane, distance: squared.sqrt() });
         }
     }
 }
@@ -144,12 +231,14 @@ pub(crate) struct NearBox {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BoxBatch {
     blocks: Vec<Block>,
+    /// Balls around [`FAN`] blocks each, and around [`FAN`] of those balls; neither for few boxes.
+    levels: Option<[Vec<Ball>; 2]>,
 }
 
 impl BoxBatch {
     /// The given boxes, in order.
     pub(crate) fn new(boxes: &[PlacedBox]) -> Self {
-        let blocks = boxes
+        let blocks: Vec<Block> = boxes
             .chunks(LANES)
             .map(|chunk| {
                 let mut block = Block::EMPTY;
@@ -164,13 +253,19 @@ impl BoxBatch {
                 block
             })
             .collect();
-        Self { blocks }
+        let levels = (boxes.len() > FEW).then(|| {
+            let balls: Vec<_> = blocks.iter().map(|block| block.ball).collect();
+            let groups: Vec<_> = balls.chunks(FAN).map(ball_around_balls).collect();
+            let wholes = groups.chunks(FAN).map(ball_around_balls).collect();
+            [groups, wholes]
+        });
+        Self { blocks, levels }
     }
 
     /// Writes into `out` the boxes nearer to a point than `reach` metres (not negative), in order.
     pub(crate) fn near(&self, point: &Vector3<f64>, reach: f64, out: &mut Vec<NearBox>) {
         out.clear();
-        Arch::new().dispatch(Near { blocks: &self.blocks, point, reach, out });
+        Arch::new().dispatch(Near { levels: self.levels.as_ref(), blocks: &self.blocks, point, reach, out });
     }
 }
 
@@ -283,10 +378,13 @@ mod tests {
     proptest! {
         #[test]
         fn the_batch_says_what_each_box_says(
-            boxes in prop::collection::vec(placed(), 0..19), at in prop::array::uniform3(-3.0_f64..3.0), reach in 0.0_f64..3.0,
+            boxes in prop_oneof![prop::collection::vec(placed(), 0..19), prop::collection::vec(placed(), 129..700)], at in prop::array::uniform3(-3.0_f64..3.0), reach in 0.0_f64..3.0,
         ) {
             let at = Vector3::from(at);
             let mut out = vec![NearBox { index: 7, distance: 7.0 }];
+            let order = by_place(&boxes);
+            prop_assert!(boxes.len() > FEW || order.is_sorted());
+            let boxes: Vec<_> = order.iter().map(|i| boxes[*i]).collect();
             BoxBatch::new(&boxes).near(&at, reach, &mut out);
             let near = boxes.iter().map(|placed| placed.ball_distance(&at, 0.0)).enumerate().filter(|(_, d)| *d < reach);
             let near: Vec<_> = near.collect();

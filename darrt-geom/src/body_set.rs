@@ -1,8 +1,10 @@
 //! Indices of bodies in a collision model, and sets of them.
 
 /// Most bodies a collision model may have.
-pub const MAXIMUM_BODIES: usize = 512;
-const WORDS: usize = MAXIMUM_BODIES / 64;
+pub const MAXIMUM_BODIES: usize = 16_384;
+/// Bodies from this index on are the crowd: a set has all of them or none. They never move.
+pub const FIRST_OF_CROWD: usize = 511;
+const WORDS: usize = FIRST_OF_CROWD / 64 + 1;
 
 /// Which body of a collision model: the order of registration, from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -18,6 +20,12 @@ impl BodyIndex {
     pub const fn get(self) -> usize {
         self.0 as usize
     }
+
+    /// Its place among the bits of a set.
+    #[inline]
+    fn bit(self) -> usize {
+        self.get().min(FIRST_OF_CROWD)
+    }
 }
 
 impl std::fmt::Display for BodyIndex {
@@ -28,7 +36,8 @@ impl std::fmt::Display for BodyIndex {
 
 /// A set of bodies as bits; `Copy`, 64 bytes.
 ///
-/// Indices at or beyond [`MAXIMUM_BODIES`] are never members; no model has them.
+/// The bodies from [`FIRST_OF_CROWD`] on share one bit: who puts in one of them puts in all. So a set has the same size in a room with
+/// ten thousand obstacles as on a desk; obstacles beyond the first few hundred have nothing about them that a set could tell apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct BodySet {
     words: [u64; WORDS],
@@ -37,13 +46,13 @@ pub struct BodySet {
 impl BodySet {
     /// No body.
     pub const EMPTY: Self = Self { words: [0; WORDS] };
-    /// Every body a model could have.
+    /// Every body.
     pub const ALL: Self = Self { words: [u64::MAX; WORDS] };
 
     /// Adds a body.
     pub fn insert(&mut self, body: BodyIndex) {
-        if let Some(word) = self.words.get_mut(body.get() / 64) {
-            *word |= 1 << (body.get() % 64);
+        if let Some(word) = self.words.get_mut(body.bit() / 64) {
+            *word |= 1 << (body.bit() % 64);
         }
     }
 
@@ -64,15 +73,15 @@ impl BodySet {
 
     /// Takes a body out.
     pub fn remove(&mut self, body: BodyIndex) {
-        if let Some(word) = self.words.get_mut(body.get() / 64) {
-            *word &= !(1 << (body.get() % 64));
+        if let Some(word) = self.words.get_mut(body.bit() / 64) {
+            *word &= !(1 << (body.bit() % 64));
         }
     }
 
     /// Whether the body is in the set.
     #[inline]
     pub fn contains(&self, body: BodyIndex) -> bool {
-        self.words.get(body.get() / 64).is_some_and(|word| word >> (body.get() % 64) & 1 == 1)
+        self.words.get(body.bit() / 64).is_some_and(|word| word >> (body.bit() % 64) & 1 == 1)
     }
 
     /// Bodies in either set.
@@ -101,12 +110,12 @@ impl BodySet {
         *self == Self::EMPTY
     }
 
-    /// Number of bodies.
+    /// Number of bodies; the crowd counts as one.
     pub fn len(&self) -> usize {
         self.words.iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    /// The bodies in ascending order.
+    /// The bodies in ascending order; of the crowd the first.
     pub fn iter(&self) -> impl Iterator<Item = BodyIndex> + '_ {
         (0_u16..).zip(&self.words).flat_map(|(block, &word)| {
             let rest = |w: &u64| Some(w & (w - 1)).filter(|&w| w != 0);
@@ -133,13 +142,14 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn bodies_no_model_has_are_never_members() {
-        let mut set = BodySet::ALL;
-        let beyond = BodyIndex::new(600);
-        set.insert(beyond);
-        assert!(!set.contains(beyond) && set.len() == MAXIMUM_BODIES);
-        set.remove(beyond);
-        assert_eq!(set, BodySet::ALL);
+    fn the_crowd_is_in_or_out() {
+        let [last, first, other] = [510, 511, 9000].map(BodyIndex::new);
+        let mut set = BodySet::EMPTY;
+        set.insert(other);
+        assert!(set.contains(first) && set.contains(other) && !set.contains(last) && set.len() == 1);
+        assert!(set.iter().eq([first]) && BodySet::ALL.contains(other));
+        set.remove(first);
+        assert!(set.is_empty());
     }
 
     proptest! {

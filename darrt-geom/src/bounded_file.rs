@@ -4,7 +4,7 @@
 //! system says about them, before a byte is read.
 
 use std::fs::File;
-use std::io::Read as _;
+use std::io::Read;
 use std::path::Path;
 
 /// Why a file was not read.
@@ -70,6 +70,23 @@ pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     Ok(bytes)
 }
 
+/// What is left of `source`, as UTF-8 text, at most `limit` bytes of it; `name` is what messages call it.
+///
+/// # Errors
+/// [`FileError`] with the name when it is longer, cannot be read, or is no text.
+pub fn read_stream(source: impl Read, name: &str, limit: u64) -> Result<String, FileError> {
+    let path = || name.to_owned();
+    let mut bytes = Vec::new();
+    source.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| FileError::Unreadable {
+        path: path(),
+        kind: error.kind(),
+        reason: error.to_string(),
+    })?;
+    check_length(bytes.len() as u64, name, limit)?;
+    String::from_utf8(bytes)
+        .map_err(|error| FileError::NotUtf8 { path: path(), offset: error.utf8_error().valid_up_to() })
+}
+
 /// As [`read_bytes`], for UTF-8 text.
 ///
 /// # Errors
@@ -104,6 +121,13 @@ mod tests {
         assert!(matches!(read_text(&path, 5), Err(FileError::NotUtf8 { offset: 3, .. })));
         assert_eq!(read_bytes(&path, 5).unwrap(), b"abc\xff");
         assert_eq!(read_bytes(&path, u64::MAX).unwrap(), b"abc\xff");
+    }
+
+    #[test]
+    fn streams_are_read_up_to_the_limit() {
+        assert_eq!(read_stream("abc".as_bytes(), "s", 3).unwrap(), "abc");
+        assert!(matches!(read_stream("abcd".as_bytes(), "s", 3), Err(FileError::TooLarge { bytes: 4, .. })));
+        assert!(matches!(read_stream(&b"a\xff"[..], "s", 3), Err(FileError::NotUtf8 { offset: 1, .. })));
     }
 
     #[test]

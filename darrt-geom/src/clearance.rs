@@ -14,7 +14,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 pub struct Clearance {
     /// Metres. Positive: the distance (to 1e-5 m; parry is no better on curved shapes). Zero or negative: they touch or
     /// overlap, and its size is an upper bound of the shift that would part the two parts (exact for two boxes, a box and a
-    /// half space, or two balls; always zero for meshes, which have no inside).
+    /// half space, or two balls; always zero for meshes).
     pub distance: f64,
     /// Nearest point of the first body (world); when they overlap, a point in both.
     pub first: Point3<f64>,

@@ -69,12 +69,16 @@ pub struct Closer {
     pub others: BodySet,
     /// Such pairs are hits when they are nearer than this, in metres; more than the clearance of the query counts as that.
     pub clearance: f64,
+    /// Of these pairs only this one, the smaller index first: sets do not tell the bodies of the crowd apart.
+    pub only: Option<(BodyIndex, BodyIndex)>,
 }
 
 impl Closer {
     #[inline]
     fn names(&self, a: BodyIndex, b: BodyIndex) -> bool {
-        self.ones.contains(a) && self.others.contains(b) || self.ones.contains(b) && self.others.contains(a)
+        let is_named =
+            self.ones.contains(a) && self.others.contains(b) || self.ones.contains(b) && self.others.contains(a);
+        is_named && self.only.is_none_or(|only| only == (a.min(b), a.max(b)))
     }
 }
 

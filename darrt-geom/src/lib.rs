@@ -35,7 +35,7 @@ pub mod support;
 
 pub use allowed::{AllowedContact, AllowedContacts, ContactReason};
 pub use body::{Body, Part};
-pub use body_set::{BodyIndex, BodySet, MAXIMUM_BODIES};
+pub use body_set::{BodyIndex, BodySet, FIRST_OF_CROWD, MAXIMUM_BODIES};
 pub use bounded_file::FileError;
 pub use check::{MAXIMUM_LENGTH, MINIMUM_LENGTH};
 pub use clearance::Clearance;

@@ -2,6 +2,7 @@
 
 mod dae;
 mod glb;
+mod inside;
 mod read;
 
 use crate::check;
@@ -10,6 +11,9 @@ use crate::error::GeomError;
 use nalgebra::{Point3, Vector3};
 use parry3d_f64::shape::{SharedShape, TriMesh};
 use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+use inside::Inside;
 
 /// Largest mesh file read, in bytes (64 MiB).
 pub const MAXIMUM_FILE_BYTES: u64 = 64 << 20;
@@ -18,12 +22,17 @@ pub const MAXIMUM_TRIANGLES: usize = 2_000_000;
 
 /// A triangle surface; need not be closed.
 ///
-/// Distances are to the surface: a body wholly inside a closed mesh is as far from it as from its nearest triangle.
+/// A closed piece of it is solid, whichever way its triangles are turned: what lies wholly inside touches it. A closed piece inside
+/// another one is a cavity. A piece that is not closed is a shell: what lies on either side of it does not touch it.
 #[derive(Clone)]
 pub struct TriangleMesh {
     vertices: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
     parry: SharedShape,
+    /// Triangles without an area, which may close the gap between others.
+    flat: Vec<[Point3<f64>; 3]>,
+    /// Found out when it is asked for.
+    inside: Arc<OnceLock<Inside>>,
 }
 
 impl TriangleMesh {
@@ -39,7 +48,7 @@ impl TriangleMesh {
         for (i, p) in vertices.iter().enumerate() {
             check::point(format_args!("vertex {i} of {name}"), p)?;
         }
-        let (vertices, triangles) = compact(name, vertices, triangles)?;
+        let (vertices, triangles, flat) = compact(name, vertices, triangles)?;
         check::count(format_args!("triangles with an area of {name}"), triangles.len(), 1, MAXIMUM_TRIANGLES)?;
         let corners = vertices.iter().map(|p| convert::vector(&p.coords)).collect();
         let mesh = TriMesh::new(corners, triangles.clone()).map_err(|error| GeomError::Malformed {
@@ -47,7 +56,7 @@ impl TriangleMesh {
             format: "mesh",
             reason: error.to_string(),
         })?;
-        Ok(Self { vertices, triangles, parry: SharedShape::new(mesh) })
+        Ok(Self { vertices, triangles, parry: SharedShape::new(mesh), flat, inside: Arc::default() })
     }
 
     /// Reads a mesh from an STL (ascii or binary), OBJ, COLLADA (`dae`) or binary glTF (`glb`) file, chosen by the ending; each
@@ -81,6 +90,40 @@ impl TriangleMesh {
         &self.triangles
     }
 
+    /// Is the point in the solid that the closed pieces enclose?
+    pub fn contains(&self, p: &Point3<f64>) -> bool {
+        self.inside().contains(p)
+    }
+
+    /// Is there a closed piece around one of the points and not around the other? Then every way between them crosses the mesh.
+    pub fn separates(&self, p: &Point3<f64>, q: &Point3<f64>) -> bool {
+        let inside = self.inside();
+        inside.around(p) != inside.around(q)
+    }
+
+    /// How many edges have a triangle on one side only: none if the whole mesh is closed.
+    pub fn open_edges(&self) -> usize {
+        self.inside().open_edges()
+    }
+
+    /// A point of each piece: a piece that touches nothing is wholly where its point is.
+    pub(crate) fn points_of_pieces(&self) -> &[Point3<f64>] {
+        self.inside().corners()
+    }
+
+    /// The triangles of the closed pieces, each with its piece, and 1 if that is a solid, -1 if it is a cavity.
+    pub(crate) fn closed_triangles(&self) -> impl Iterator<Item = ([Point3<f64>; 3], usize, i32)> + '_ {
+        self.inside().closed()
+    }
+
+    fn inside(&self) -> &Inside {
+        self.inside.get_or_init(|| {
+            let corner = |index: &u32| self.vertices.get(*index as usize).copied().unwrap_or_else(Point3::origin);
+            let with_area = self.triangles.iter().map(|[a, b, c]| [corner(a), corner(b), corner(c)]);
+            Inside::new(with_area.chain(self.flat.iter().copied()))
+        })
+    }
+
     pub(crate) fn parry(&self) -> &SharedShape {
         &self.parry
     }
@@ -101,14 +144,16 @@ impl std::fmt::Debug for TriangleMesh {
     }
 }
 
-/// Vertices and triangles with the idle ones dropped and the rest renumbered in order of first use.
-type Compact = (Vec<Point3<f64>>, Vec<[u32; 3]>);
+/// Vertices and triangles with the idle ones dropped and the rest renumbered in order of first use; the corners of the triangles
+/// that were dropped.
+type Compact = (Vec<Point3<f64>>, Vec<[u32; 3]>, Vec<[Point3<f64>; 3]>);
 
 /// Checks the indices and drops triangles without area and vertices without triangle.
 fn compact(name: &str, vertices: &[Point3<f64>], triangles: &[[u32; 3]]) -> Result<Compact, GeomError> {
     let mut renamed: Vec<Option<u32>> = vec![None; vertices.len()];
     let mut kept_vertices = Vec::new();
     let mut kept_triangles = Vec::with_capacity(triangles.len());
+    let mut flat = Vec::new();
     for (number, triangle) in triangles.iter().enumerate() {
         let mut corners = [Point3::origin(); 3];
         for (corner, &index) in corners.iter_mut().zip(triangle) {
@@ -121,6 +166,7 @@ fn compact(name: &str, vertices: &[Point3<f64>], triangles: &[[u32; 3]]) -> Resu
         }
         let [a, b, c] = corners;
         if (b - a).cross(&(c - a)).norm() <= f64::MIN_POSITIVE {
+            flat.push(corners);
             continue;
         }
         let mut renumbered = [0; 3];
@@ -134,7 +180,7 @@ fn compact(name: &str, vertices: &[Point3<f64>], triangles: &[[u32; 3]]) -> Resu
         }
         kept_triangles.push(renumbered);
     }
-    Ok((kept_vertices, kept_triangles))
+    Ok((kept_vertices, kept_triangles, flat))
 }
 
 #[cfg(test)]

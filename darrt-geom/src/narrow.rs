@@ -172,7 +172,7 @@ fn bounded_gap(a: &Posed<'_>, b: &Posed<'_>) -> Gap {
         // The nearest points on a mesh with slivers may be far from the nearest; another of parry's walks over the
         // triangles finds others (found by fuzzing).
         return match parry3d_f64::query::distance(&pose_a, shape_a, &pose_b, shape_b) {
-            Ok(other) if other.distance <= 0.0 => Gap::Closed,
+            Ok(other) if other.distance <= 0.0 || encloses(a, b) || encloses(b, a) => Gap::Closed,
             Ok(other) => {
                 let distance = distance.min(other.distance);
                 Gap::Open { distance, lower: lower.min(distance), first, second }
@@ -181,6 +181,17 @@ fn bounded_gap(a: &Posed<'_>, b: &Posed<'_>) -> Gap {
         };
     }
     Gap::Open { distance, lower, first, second }
+}
+
+/// Is something of `other`, which does not touch the surface of the mesh, in its solid?
+fn encloses(mesh: &Posed<'_>, other: &Posed<'_>) -> bool {
+    let Shape::Mesh(triangles) = mesh.shape else { return false };
+    let mesh_from_other = mesh.world_from_shape.inv_mul(&other.world_from_shape);
+    let is_within = |p: &Point3<f64>| triangles.contains(&(mesh_from_other * p));
+    match other.shape {
+        Shape::Mesh(others) => others.points_of_pieces().iter().any(is_within),
+        convex => is_within(&convex.support_point(&Vector3::x())),
+    }
 }
 
 /// A lower bound of the distance: the gap along `direction` (unit, from a to b), exact when the direction is that of the

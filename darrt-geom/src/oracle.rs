@@ -3,6 +3,8 @@
 //! It shares nothing with [`crate::collide`] but the shapes themselves, so that tests can hold the fast checker against it and a
 //! plan can be judged by code that did not make it.
 
+mod enclosed;
+
 use crate::body::{Body, Part};
 use crate::check;
 use crate::convert::{self, ParryShape};
@@ -50,7 +52,7 @@ pub struct Finding {
 
 /// Every pair of bodies that touch or overlap, except those `skip` says to leave out (asked with the smaller index first).
 ///
-/// Of a pair of bodies the first intersecting parts are told. Meshes are surfaces. Two half spaces touch unless they face away
+/// Of a pair of bodies the first intersecting parts are told. Two half spaces touch unless they face away
 /// from each other.
 ///
 /// # Errors
@@ -58,7 +60,7 @@ pub struct Finding {
 pub fn intersections(bodies: &[PosedBody<'_>], skip: &dyn Fn(usize, usize) -> bool) -> Result<Vec<Finding>, GeomError> {
     let mut found = Vec::new();
     each_pair(bodies, skip, &mut |pair| {
-        let hit = each_parts(pair).find(|(_, a, b)| intersect(a, b));
+        let hit = each_parts(pair).find(|(_, a, b)| intersect(a, b) || is_inside(a, b));
         found.extend(hit.map(|(parts, a, b)| finding(pair, parts, &a, &b, Apart::NONE, true)));
     })?;
     Ok(found)
@@ -75,7 +77,7 @@ pub fn nearest(bodies: &[PosedBody<'_>], skip: &dyn Fn(usize, usize) -> bool) ->
         for (parts, a, b) in each_parts(pair) {
             let mut apart = separation(&a, &b);
             // A plane between the two proves that they do not touch.
-            let intersects = !apart.is_proved() && intersect(&a, &b);
+            let intersects = !apart.is_proved() && (apart.distance <= 0.0 || intersect(&a, &b));
             if intersects {
                 apart = Apart::NONE;
             }
@@ -155,7 +157,12 @@ fn finding(
     Finding { first: pair.indices.0, second: pair.indices.1, parts, distance, lower, across, intersects, place }
 }
 
-/// Whether two parts touch or overlap.
+/// Whether one of two parts is inside a mesh that the other is.
+fn is_inside(a: &Placed<'_>, b: &Placed<'_>) -> bool {
+    enclosed::is_in(a, b) || enclosed::is_in(b, a)
+}
+
+/// Whether the surfaces of two parts meet, or solids overlap.
 fn intersect(a: &Placed<'_>, b: &Placed<'_>) -> bool {
     match (a.shape, b.shape) {
         (Shape::HalfSpace { .. }, Shape::HalfSpace { .. } | Shape::Mesh(_))
@@ -207,6 +214,9 @@ fn separation(a: &Placed<'_>, b: &Placed<'_>) -> Apart {
                 _ => 0.0,
             };
             let distance = measured(a, b).min(other);
+            if distance <= 0.0 || is_inside(a, b) {
+                return Apart::NONE;
+            }
             Apart { distance, lower: (distance - MESH_SLACK).max(0.0), ..Apart::NONE }
         }
         _ => convex(a, b),

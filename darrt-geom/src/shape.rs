@@ -10,8 +10,7 @@ use std::sync::Arc;
 /// A solid in its own frame, metres; cylinders and capsules stand along local z.
 ///
 /// Values are made by the constructors, which validate; match with `..` because the variants may grow fields.
-/// A [`Shape::Mesh`] is a surface, not a solid: what lies wholly inside a closed mesh does not touch it. Use
-/// [`Shape::ConvexHull`] where the inside matters.
+/// A [`Shape::Mesh`] is solid where it is closed, and a surface where it is not: see [`TriangleMesh`].
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Shape {

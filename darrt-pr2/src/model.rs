@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 
 use darrt_geom::Body;
 use darrt_primitives::kinematics::{
-    JointLimit, KinematicTree, RobotDescription, UrdfError, link_bodies, mesh_folders, no_meshes,
+    JointLimit, KinematicTree, MeshPlaces, RobotDescription, UrdfError, link_bodies, no_meshes,
 };
 use nalgebra::Isometry3;
 
@@ -105,14 +105,14 @@ impl Pr2Model {
         Self::from_urdf(&*embedded_description()?, &no_meshes)
     }
 
-    /// The robot of a URDF file; meshes are looked up in `mesh_folders` and become their convex hulls.
+    /// The robot of a URDF file; meshes are looked for at `meshes` and become their convex hulls.
     ///
     /// # Errors
     /// [`ModelError::Urdf`] when the file cannot be read or is no sound URDF; [`ModelError::InFile`] with everything that
     /// [`from_urdf`](Self::from_urdf) reports.
-    pub fn from_file(path: &Path, folders: &[PathBuf]) -> Result<Self, ModelError> {
+    pub fn from_file(path: &Path, meshes: &MeshPlaces) -> Result<Self, ModelError> {
         let within = |source| ModelError::InFile { path: path.to_path_buf(), source: Box::new(source) };
-        Self::from_urdf(&RobotDescription::from_file(path)?, &mesh_folders(folders)).map_err(within)
+        Self::from_urdf(&RobotDescription::from_file(path)?, &meshes.paths()).map_err(within)
     }
 
     /// The robot of a description; `mesh_path` says where the file of a mesh is.

@@ -1,5 +1,6 @@
 //! The PR2 as a [`Manipulator`]: one arm and the base move; torso, head and the other arm stay.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use darrt_primitives::kinematics::JointLimit;
@@ -192,6 +193,8 @@ fn check_start(model: &Pr2Model, side: Side, kind: LimitKind, rest: &WholeBody) 
     let values = rest.arms.get(side.index()).into_iter().flatten();
     let limits = model.limits(side, kind).into_iter().zip(model.limits(side, LimitKind::Hard));
     for ((name, (limit, hard)), &value) in JOINT_NAMES.iter().zip(limits).zip(values) {
+        // A joint that turns on and on is where it is after any number of turns; so many are degrees.
+        let limit = if limit.is_unlimited() { JointLimit::new(-TAU, TAU) } else { limit };
         if !limit.contains(value) {
             let which = match kind {
                 LimitKind::Soft => "soft",

@@ -1,9 +1,8 @@
 //! The PR2 in files: what the table `[robot]` of a problem means, and the robot as data for those who must not trust its code.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use darrt_primitives::kinematics::{RobotDescription, folders_above};
+use darrt_primitives::kinematics::{MeshPlaces, RobotDescription};
 use darrt_primitives::manipulator::{Configuration, Hand};
 use darrt_task::clock::{Bounds, MotionLimits};
 use darrt_task::problem_file::{ArmSide, Limits, Robot as RobotSettings};
@@ -48,7 +47,7 @@ impl TaskRobot for Pr2 {
 
     fn build(settings: &RobotSettings) -> Result<(Self, ArmConfiguration), RobotError> {
         let model = match &settings.urdf {
-            Some(path) => Pr2Model::from_file(path, &folders(settings))?,
+            Some(path) => Pr2Model::from_file(path, &meshes(settings))?,
             None => Pr2Model::embedded()?,
         };
         let limits = match settings.limits {
@@ -86,7 +85,7 @@ impl TaskRobot for Pr2 {
         let pairs = self_collision::pairs(side).into_iter().map(|pair| [pair.moving, pair.other]);
         Ok(RobotFacts {
             description,
-            mesh_folders: folders(settings),
+            meshes: meshes(settings),
             arm_joints: joints(side).to_vec(),
             finger_joint: finger(side),
             tool_link: format!("{prefix}_gripper_tool_frame"),
@@ -97,6 +96,7 @@ impl TaskRobot for Pr2 {
             at_rest: Side::BOTH.map(finger).into_iter().zip(open).collect(),
             self_pairs: pairs.collect(),
             is_bolted: false,
+            drives_along_heading: false,
             pad_length_m: gripper::PAD_LENGTH,
             grip_force_n: Gripper.grip_force_n(),
             payload_kg: PAYLOAD_KG,
@@ -150,8 +150,8 @@ fn torso_m(settings: &RobotSettings) -> Result<f64, RobotError> {
     Err(RobotError::Key { key: "robot.torso_m", why: format!("is {value}, must be in [{low}, {high}]") })
 }
 
-fn folders(settings: &RobotSettings) -> Vec<PathBuf> {
-    settings.urdf.as_deref().map(folders_above).unwrap_or_default()
+fn meshes(settings: &RobotSettings) -> MeshPlaces {
+    settings.urdf.as_deref().map(MeshPlaces::around).unwrap_or_default()
 }
 
 /// Where the arm that manipulates starts, and where the other one is parked.

@@ -11,7 +11,7 @@ fn the_example_in_the_documentation_is_valid() {
     let page = include_str!("../../darrt-primitives/task/docs/problem-format.md");
     let example = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
     let problem = ProblemFile::from_toml(example, "docs/problem-format.md").unwrap();
-    assert_eq!(problem.name, "mug-to-tray");
+    assert_eq!(problem.name, "mug-aside");
     let goal = &problem.goal.objects[0];
     assert_eq!(goal.state(), GoalState::Released);
     assert!(matches!(goal.target(), Some(GoalTarget::Within { .. })));

@@ -1,6 +1,7 @@
 //! The one motion of this domain: base and arm through given configurations, straight in joint space between them,
 //! while an object is carried rigidly, pushed along a line or an arc, or left alone.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use darrt_core::domain::Domain;
@@ -9,6 +10,7 @@ use darrt_core::space::ComponentSpace;
 use darrt_core::state::ObjectId;
 use nalgebra::Isometry3;
 
+use crate::heading_drive;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Held, Mode};
 use crate::push::slide::Slide;
@@ -88,7 +90,8 @@ impl Load {
 }
 
 impl<M: Manipulator> ArmMotion<M> {
-    /// From `start` through `waypoints` (the start itself not among them). The mode is `during` on the open interval
+    /// From `start` through `waypoints` (the start itself not among them), with corners between them where the base drives along
+    /// its heading only. The mode is `during` on the open interval
     /// and `after` at its end.
     pub fn new(
         m: &Tabletop<M>,
@@ -98,6 +101,7 @@ impl<M: Manipulator> ArmMotion<M> {
         during: Mode,
         after: Mode,
     ) -> Self {
+        let waypoints = &*with_corners(m, &start.robot, waypoints);
         let load = Load::new(carried, &start.objects, waypoints, &during);
         let reach_m = match &load {
             Load::Pushed(pushed) => pushed.reach_m(m, start),
@@ -163,6 +167,27 @@ impl<M: Manipulator> ArmMotion<M> {
         let ends = leg.and_then(|(leg, s)| Some((self.way.get(leg)?, self.way.get(leg + 1)?, s)));
         ends.map_or_else(|| self.way.last(), |(a, b, s)| m.robot().interpolate(&a, &b, s))
     }
+}
+
+/// The waypoints, and between them the corners of a base that drives along its heading only.
+fn with_corners<'a, M: Manipulator>(
+    m: &Tabletop<M>,
+    start: &Configuration<M::Joints>,
+    waypoints: &'a [Waypoint<M::Joints>],
+) -> Cow<'a, [Waypoint<M::Joints>]> {
+    let drives = |waypoint: &Waypoint<M::Joints>| waypoint.robot.base != start.base;
+    if !m.manipulator().drives_along_heading() || !waypoints.iter().any(drives) {
+        return Cow::Borrowed(waypoints);
+    }
+    let mut all = Vec::with_capacity(3 * waypoints.len());
+    let mut here = Waypoint { robot: *start, pushed: 0.0 };
+    for next in waypoints {
+        let corners = heading_drive::corners(&here.robot.base, &next.robot.base);
+        all.extend(corners.into_iter().map(|base| Waypoint { robot: Configuration { base, ..here.robot }, ..here }));
+        all.push(*next);
+        here = *next;
+    }
+    Cow::Owned(all)
 }
 
 impl Pushed {

@@ -91,7 +91,7 @@ const DOUBT_M: f64 = 1e-4;
 
 impl BasePath {
     /// Poses of the base from that of `from`, the first, to `to`, the last, both bit for bit; straight drives lie between
-    /// them. The arm, the objects and what is held stand as in `from`, whose mode is that on the way. Both ends are
+    /// them, or those of a base that drives along its heading only. The arm, the objects and what is held stand as in `from`, whose mode is that on the way. Both ends are
     /// clear with this [care](darrt_core::validity::Validity::most_care), and so is the way.
     ///
     /// # Errors
@@ -115,7 +115,14 @@ impl BasePath {
             least_m = least_m.min(footprint.distance_m(end, least_m, f64::NEG_INFINITY));
         }
         let [wanted_m, _] = around.drive_margins_m(around.most_care()).map(|margin| margin.max(wanted_m) + SPARE_M);
-        let terms = Terms { least_m, wanted_m, resolution_m: SPARE_M, turn_m: self.turn_m, tight: self.tight.max(1.0) };
+        let terms = Terms {
+            least_m,
+            wanted_m,
+            resolution_m: SPARE_M,
+            turn_m: self.turn_m,
+            tight: self.tight.max(1.0),
+            is_along_heading: m.manipulator().drives_along_heading(),
+        };
         let ends = [&from.robot.base, to];
         around.with_worker(|worker| {
             let mut drives = Drives::new(m, from, worker);

@@ -31,7 +31,7 @@ pub mod urdf;
 
 pub use batch::{BatchForward, BatchPoses, PoseLanes};
 pub use chain_inverse::{ChainInverse, InverseOptions, JointValues};
-pub use collision::{folders_above, link_bodies, mesh_folders, no_meshes};
+pub use collision::{link_bodies, no_meshes};
 pub use jacobian::Chain;
 pub use limit::JointLimit;
 pub use mesh_places::MeshPlaces;

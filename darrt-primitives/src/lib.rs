@@ -32,6 +32,7 @@ pub mod error;
 pub mod execution_time;
 pub mod goal;
 pub mod grasp;
+pub mod heading_drive;
 pub mod joints;
 pub mod kinematics;
 pub mod laws;

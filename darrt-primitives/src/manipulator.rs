@@ -175,6 +175,12 @@ pub trait Manipulator: Send + Sync + 'static {
     /// Typical metres of hand travel per unit of each joint: weights of the arm's distance.
     fn joint_weights_m(&self) -> &[f64];
 
+    /// Does the base move along its heading only, and turn on the spot? Its drives then are those of
+    /// [`heading_drive`](crate::heading_drive).
+    fn drives_along_heading(&self) -> bool {
+        false
+    }
+
     /// Seconds from `a` to `b` on the straight line between them at the speeds that the robot is planned with, with something
     /// in its hand or with none; starting and stopping not counted. By default the bound on the travel at half a metre per
     /// second.

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use darrt_core::state::ObjectId;
 use darrt_core::validity::{Blame, BlockKind};
 use darrt_geom::allowed::{AllowedContacts, ContactReason};
-use darrt_geom::body_set::{BodyIndex, BodySet};
+use darrt_geom::body_set::{BodyIndex, BodySet, FIRST_OF_CROWD};
 use darrt_geom::collide::{Closer, CollisionModel, Hit, Scratch};
 use darrt_geom::error::GeomError;
 use darrt_geom::scene::FixedBody;
@@ -96,8 +96,22 @@ impl Surroundings {
             }
         }
         let objects = movables.iter().map(|o| model.add_moving(&o.body)).collect::<Result<Vec<_>, GeomError>>()?;
+        // What is told apart in sets comes before the crowd.
+        let is_told_apart = |body: &FixedBody| {
+            let name = &body.body.name;
+            supports.iter().any(|support| support.bodies.contains(name)) || !body.body.is_bounded()
+        };
+        let mut in_order: Vec<_> = fixed.iter().collect();
+        if links.len() + objects.len() + fixed.len() > FIRST_OF_CROWD {
+            in_order.sort_by_cached_key(|body| !is_told_apart(body));
+            let count = links.len() + objects.len() + fixed.iter().filter(|body| is_told_apart(body)).count();
+            if count > FIRST_OF_CROWD {
+                let name = "links, objects and obstacles that carry a surface, together,".to_owned();
+                return Err(GeomError::Count { name, count, minimum: 0, maximum: FIRST_OF_CROWD });
+            }
+        }
         let mut fixed_ids = Vec::new();
-        for body in fixed {
+        for body in in_order {
             let id = model.add_fixed(&body.body, &body.world_from_body)?;
             // The base rolls on the floor: its links keep their height.
             if body.body.parts.iter().all(|part| matches!(part.shape, Shape::HalfSpace { .. })) {

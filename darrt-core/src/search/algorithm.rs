@@ -9,6 +9,8 @@ use crate::budget::Interrupt;
 use crate::domain::Domain;
 use crate::observe::accounts::Accounts;
 use crate::problem::Problem;
+use crate::record::Growth;
+use crate::state::State;
 use crate::verify::{Refusal, Solution};
 
 /// One attempt of a search, which [`solve_with`](crate::solve::solve_with) asks for one iteration after the other.
@@ -34,6 +36,19 @@ pub trait Planner<D: Domain> {
 
     /// Metres from a sample of the goal to the nearest state so far; infinite if the goal has no samples.
     fn nearest_to_goal(&self) -> f64;
+
+    /// The state that is so near to the goal; by default none is known.
+    fn nearest(&self) -> Option<&State<D>> {
+        None
+    }
+
+    /// From now on [`Planner::growth`] will be asked for after every iteration. By default nothing is known of a tree.
+    fn keep_track(&mut self) {}
+
+    /// What the last iteration did to the tree that grows from the start, if [track is kept](Planner::keep_track) of it.
+    fn growth(&self) -> Option<Growth<'_, D>> {
+        None
+    }
 
     /// The ways to the best states reached, the best first, for the time when there is no plan; by default none are known.
     fn parts(&self) -> Vec<Part<D>> {
@@ -143,6 +158,18 @@ impl<D: Domain> Planner<D> for Darrt<'_, D> {
 
     fn nearest_to_goal(&self) -> f64 {
         self.nearest_to_goal()
+    }
+
+    fn nearest(&self) -> Option<&State<D>> {
+        self.nearest.as_ref()
+    }
+
+    fn keep_track(&mut self) {
+        self.tree.number_births();
+    }
+
+    fn growth(&self) -> Option<Growth<'_, D>> {
+        Some(Growth { tree: self.tree(), extended: self.extended })
     }
 
     fn parts(&self) -> Vec<Part<D>> {

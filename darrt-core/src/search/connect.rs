@@ -22,6 +22,7 @@ use crate::pipeline::Unproved;
 use crate::plan::{Plan, Step as PlanStep};
 use crate::problem::Problem;
 use crate::random::{Purpose, stream};
+use crate::record::Growth;
 use crate::state::State;
 use crate::tree::NodeId;
 use crate::verify::{Refusal, Solution};
@@ -142,6 +143,7 @@ impl<'p, D: Domain> Connect<'p, D> {
             let links = turned_around(&extension);
             (extension, links)
         };
+        self.forward.extended = None;
         let first = self.goal_nodes.len();
         for Link { state, to, step } in links {
             let next = to.map_or(n, |link| first + link);
@@ -274,6 +276,18 @@ impl<D: Domain> Planner<D> for Connect<'_, D> {
 
     fn nearest_to_goal(&self) -> f64 {
         self.forward.nearest_to_goal()
+    }
+
+    fn nearest(&self) -> Option<&State<D>> {
+        Planner::nearest(&self.forward)
+    }
+
+    fn keep_track(&mut self) {
+        self.forward.keep_track();
+    }
+
+    fn growth(&self) -> Option<Growth<'_, D>> {
+        self.forward.growth()
     }
 
     fn parts(&self) -> Vec<Part<D>> {

@@ -254,6 +254,10 @@ impl<D: Domain> Planner<D> for Hierarchical<'_, D> {
         self.alone.as_ref().map_or_else(|| self.whole.nearest_to_goal(), |alone| alone.nearest_to_goal())
     }
 
+    fn nearest(&self) -> Option<&State<D>> {
+        self.alone.as_ref().and_then(|alone| alone.nearest())
+    }
+
     fn parts(&self) -> Vec<Part<D>> {
         // The parts of the others begin elsewhere, or have no robot.
         self.alone.as_ref().map_or_else(Vec::new, |alone| alone.parts())

@@ -2,9 +2,9 @@
 
 use super::solid::{Plane, Solid};
 use super::{CollisionModel, Poses, Registered};
-use crate::batch::{BallBatch, BoxBatch, PlacedBox};
+use crate::batch::{self, BallBatch, BoxBatch, PlacedBox};
 use crate::body::Body;
-use crate::body_set::{BodyIndex, BodySet, MAXIMUM_BODIES};
+use crate::body_set::{BodyIndex, BodySet, FIRST_OF_CROWD, MAXIMUM_BODIES};
 use crate::check;
 use crate::error::GeomError;
 use crate::shape::Shape;
@@ -21,6 +21,7 @@ pub struct CollisionModelBuilder {
     solids: Vec<Solid>,
     planes: Vec<Plane>,
     disabled: BTreeSet<(BodyIndex, BodyIndex)>,
+    names: BTreeSet<Arc<str>>,
 }
 
 impl CollisionModelBuilder {
@@ -37,11 +38,12 @@ impl CollisionModelBuilder {
     /// Adds a body that gets its pose before each query.
     ///
     /// # Errors
-    /// As [`Self::add_fixed`], and when the body is not bounded.
+    /// As [`Self::add_fixed`], and when the body is not bounded, or [`FIRST_OF_CROWD`] bodies are there already.
     pub fn add_moving(&mut self, body: &Body) -> Result<BodyIndex, GeomError> {
         if !body.is_bounded() {
             return Err(GeomError::UnboundedMoving { name: body.name.to_string() });
         }
+        check::count("bodies up to the last one that moves", self.bodies.len() + 1, 0, FIRST_OF_CROWD)?;
         self.add(body, None)
     }
 
@@ -49,7 +51,7 @@ impl CollisionModelBuilder {
     /// [`crate::AllowedContacts`].
     ///
     /// # Errors
-    /// When one of them is not registered.
+    /// When one of them is not registered, or one of the crowd, see [`FIRST_OF_CROWD`].
     pub fn disable(&mut self, a: BodyIndex, b: BodyIndex) -> Result<(), GeomError> {
         for body in [a, b] {
             if body.get() >= self.bodies.len() {
@@ -59,6 +61,7 @@ impl CollisionModelBuilder {
                     count: self.bodies.len(),
                 });
             }
+            check::count("bodies up to one of a disabled pair", body.get() + 1, 0, FIRST_OF_CROWD)?;
         }
         self.disabled.insert((a.min(b), a.max(b)));
         Ok(())
@@ -66,13 +69,13 @@ impl CollisionModelBuilder {
 
     /// The finished model.
     pub fn build(self) -> CollisionModel {
-        let Self { mut bodies, solids, planes, disabled } = self;
+        let Self { mut bodies, solids, planes, disabled, .. } = self;
         let indices: Vec<BodyIndex> = (0_u16..).map(BodyIndex::new).take(bodies.len()).collect();
         let is_moving: Vec<bool> = bodies.iter().map(|body| body.fixed.is_none()).collect();
         let moving = |body: BodyIndex| is_moving.get(body.get()).copied().unwrap_or(false);
-        for (i, &a) in indices.iter().enumerate() {
-            for &b in indices.iter().skip(i + 1) {
-                if disabled.contains(&(a, b)) || !(moving(a) || moving(b)) {
+        for &a in indices.iter().filter(|a| moving(**a)) {
+            for &b in indices.iter().filter(|b| **b != a) {
+                if disabled.contains(&(a.min(b), a.max(b))) {
                     continue;
                 }
                 for (body, partner) in [(a, b), (b, a)] {
@@ -86,7 +89,8 @@ impl CollisionModelBuilder {
         let moving: BodySet = indices.iter().copied().filter(|&body| moving(body)).collect();
         let initial = Poses {
             world_from_body: vec![Isometry3::identity(); bodies.len()],
-            balls: BallBatch::new(&bodies.iter().map(|body| body.radius).collect::<Vec<_>>()),
+            // Only those that move are asked for.
+            balls: BallBatch::new(&bodies.iter().take(FIRST_OF_CROWD).map(|body| body.radius).collect::<Vec<_>>()),
             placed: vec![nowhere; solids.len()],
             // Nothing has been placed yet.
             unsound: indices.iter().copied().collect(),
@@ -108,7 +112,7 @@ impl CollisionModelBuilder {
     fn add(&mut self, body: &Body, fixed: Option<Isometry3<f64>>) -> Result<BodyIndex, GeomError> {
         body.check()?;
         check::count("bodies of a collision model", self.bodies.len() + 1, 0, MAXIMUM_BODIES)?;
-        if self.bodies.iter().any(|other| other.name == body.name) {
+        if !self.names.insert(Arc::clone(&body.name)) {
             return Err(GeomError::DuplicateName { what: "bodies", name: body.name.to_string() });
         }
         // Below MAXIMUM_BODIES, so it fits.
@@ -156,12 +160,16 @@ impl CollisionModel {
         for &body in indices {
             let Some(registered) = self.bodies.get(body.get()) else { continue };
             if let Some(world_from_body) = registered.fixed {
+                // Of the crowd one stands for all, and each must be placed.
+                poses.unsound.insert(body);
                 self.place(&mut poses, body, &world_from_body);
                 self.fixed_solids.extend(registered.solids.clone());
             }
         }
         let boxes: Vec<PlacedBox> = self.fixed_solids.iter().filter_map(|&i| poses.placed.get(i).copied()).collect();
-        self.fixed_boxes = BoxBatch::new(&boxes);
+        let order = batch::by_place(&boxes);
+        self.fixed_solids = order.iter().filter_map(|&i| self.fixed_solids.get(i).copied()).collect();
+        self.fixed_boxes = BoxBatch::new(&order.iter().filter_map(|&i| boxes.get(i).copied()).collect::<Vec<_>>());
         self.initial = poses;
     }
 }

@@ -133,6 +133,7 @@ fn closer(clearances: [f64; 2]) -> [Closer; 2] {
         ones: BodySet::from_iter([BodyIndex::new(i)]),
         others: BodySet::ALL,
         clearance: clearances[usize::from(i)],
+        only: None,
     })
 }
 
@@ -346,11 +347,40 @@ fn bodies_keep_their_order_and_bad_ones_are_refused() {
 #[test]
 fn there_is_a_limit_on_bodies() {
     let mut builder = CollisionModel::builder();
-    for i in 0..crate::MAXIMUM_BODIES {
+    for i in 0..crate::FIRST_OF_CROWD {
         builder.add_moving(&ball(&format!("{i}"))).unwrap();
     }
     let message = builder.add_moving(&ball("one more")).unwrap_err().to_string();
-    assert!(message.contains("513") && message.contains("512"), "{message}");
+    assert!(message.contains("512") && message.contains("511"), "{message}");
+    for i in crate::FIRST_OF_CROWD..crate::MAXIMUM_BODIES {
+        builder.add_fixed(&ball(&format!("{i}")), &Isometry3::identity()).unwrap();
+    }
+    let message = builder.add_fixed(&ball("one more"), &Isometry3::identity()).unwrap_err().to_string();
+    assert!(message.contains("16385") && message.contains("16384"), "{message}");
+}
+
+/// Balls on a grid, one ball that moves among them: what is seen of the crowd is what is seen of each alone.
+#[test]
+fn each_of_a_crowd_is_seen_where_it_is() {
+    let mut builder = CollisionModel::builder();
+    let moving = builder.add_moving(&ball("moving")).unwrap();
+    let place = |i: u32| Vector3::new(f64::from(i % 40), f64::from(i / 40 % 5), f64::from(i / 200));
+    for i in 0..1000 {
+        builder.add_fixed(&ball(&format!("{i}")), &Isometry3::from(place(i) * 3.0)).unwrap();
+    }
+    let model = builder.build();
+    let mut scratch = model.scratch();
+    let none = AllowedContacts::none();
+    for i in 0..1000 {
+        let at = place(i) * 3.0;
+        let mut ask = |x: f64| {
+            model.set_pose(&mut scratch, moving, &Isometry3::translation(at.x + x, at.y, at.z));
+            model.clearance(&mut scratch, &BodySet::ALL, &none, 0.0, 5.0)
+        };
+        let hit = ask(0.01).unwrap_err();
+        assert_eq!(model.name(hit.second).map(ToString::to_string), Some(i.to_string()));
+        assert!(ask(1.5).is_ok());
+    }
 }
 
 #[test]

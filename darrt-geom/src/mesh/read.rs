@@ -117,14 +117,28 @@ fn text_stl(shown: &str, text: &str) -> Result<Soup, GeomError> {
     Ok(soup)
 }
 
-/// OBJ; only positions and faces are kept.
+/// OBJ; only positions and faces are kept. What would be lost is refused: curved surfaces, and lines that are none of the format.
 pub(super) fn obj(shown: &str, bytes: &[u8]) -> Result<Soup, GeomError> {
     let malformed = |reason: String| GeomError::Malformed { path: shown.to_owned(), format: "OBJ", reason };
     // Only these lines matter to us; the rest (normals, textures, materials, colours) is not even shown to the parser.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = std::str::from_utf8(bytes).map_err(|e| malformed(e.to_string()))?;
     let mut kept = String::with_capacity(text.len());
-    for line in text.lines() {
-        keep(line, &mut kept);
+    let mut whole = String::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let line = line.split('#').next().unwrap_or_default().trim_end();
+        // A line goes on behind a backslash.
+        if let Some(begun) = line.strip_suffix('\\') {
+            whole.push_str(begun);
+            whole.push(' ');
+            continue;
+        }
+        whole.push_str(line);
+        keep(&whole, &mut kept).map_err(|reason| {
+            let shown: String = whole.trim().chars().take(40).collect();
+            malformed(format!("line {number}: {reason}: `{shown}`"))
+        })?;
+        whole.clear();
     }
     let options =
         tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
@@ -151,28 +165,55 @@ pub(super) fn obj(shown: &str, bytes: &[u8]) -> Result<Soup, GeomError> {
     Ok(soup)
 }
 
+/// Lines that say nothing about the surface.
+const ASIDE: [&str; 17] = [
+    "vt", "vn", "vp", "p", "l", "g", "s", "o", "mg", "bevel", "c_interp", "d_interp", "lod", "usemtl", "mtllib",
+    "usemap", "maplib",
+];
+
 /// Copies the position and face lines, reduced to coordinates and position indices.
-fn keep(line: &str, kept: &mut String) {
-    let mut words = line.split('#').next().unwrap_or_default().split_whitespace();
+fn keep(line: &str, kept: &mut String) -> Result<(), &'static str> {
+    let mut words = line.split_whitespace();
     match words.next() {
         Some("v") => {
             kept.push('v');
             // Colours may follow three coordinates, a weight may be the fourth: neither is part of the surface we keep.
+            let mut count = 0;
             for word in words.take(3) {
+                count += usize::from(word.parse::<f64>().is_ok());
                 kept.push(' ');
                 kept.push_str(word);
+            }
+            if count < 3 {
+                return Err("a vertex has three numbers");
             }
         }
         Some("f") => {
             kept.push('f');
+            let mut count = 0;
             for word in words {
+                count += 1;
                 kept.push(' ');
                 kept.push_str(word.split('/').next().unwrap_or_default());
             }
+            if count < 3 {
+                return Err("a face has at least three corners");
+            }
         }
-        _ => return,
+        Some(word) if ASIDE.contains(&word) || word.starts_with("shadow_obj") || word.starts_with("trace_obj") => {
+            return Ok(());
+        }
+        Some(
+            "cstype" | "deg" | "bmat" | "step" | "curv" | "curv2" | "surf" | "parm" | "trim" | "hole" | "scrv" | "sp"
+            | "end" | "con",
+        ) => {
+            return Err("curves and curved surfaces are not read; export triangles");
+        }
+        Some(_) => return Err("this is no line of the format"),
+        None => return Ok(()),
     }
     kept.push('\n');
+    Ok(())
 }
 
 /// Adds a triangle with three vertices of its own.

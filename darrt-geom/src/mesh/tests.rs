@@ -38,6 +38,29 @@ fn obj_polygons_become_fans_and_extras_are_ignored() {
 }
 
 #[test]
+fn what_an_obj_file_says_is_read_or_refused() {
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for text in [
+        format!("\u{feff}{corners}f 1 2 3\n"),
+        format!("\u{feff}{corners}f 1 2 3\n").replace('\n', "\r\n"),
+        format!("{corners}f 1 2 \\\n 3\n"),
+        format!("{corners}s off\nf 1 2 3 # a face"),
+    ] {
+        let soup = obj("good.obj", text.as_bytes()).unwrap();
+        assert_eq!((soup.triangles.len(), soup.vertices[0]), (1, Point3::origin()), "{text}");
+    }
+    for (more, why) in [
+        ("v 0,5 0 0\nf 1 2 3\n", "line 4: a vertex has three numbers"),
+        ("f 1 2\n", "line 4: a face has at least three corners"),
+        ("f 1 2 3\nV 0 0 1\n", "line 5: this is no line of the format"),
+        ("f 1 2 3\nsurf 0 1 0 1 1 2 3\n", "curved surfaces are not read"),
+    ] {
+        let message = obj("bad.obj", format!("{corners}{more}").as_bytes()).unwrap_err().to_string();
+        assert!(message.contains("bad.obj") && message.contains(why), "{message}");
+    }
+}
+
+#[test]
 fn malformed_files_are_errors_that_name_the_file() {
     let truncated = &binary(b"x")[..100];
     let cases: [Result<read::Soup, GeomError>; 7] = [

@@ -10,6 +10,14 @@ use super::choices::{ImproveChoice, SearchChoice};
 use super::safety::SafetyOptions;
 use crate::bench::Shard;
 
+mod robot;
+mod show;
+mod why_not;
+
+pub use robot::{RobotCheckOptions, RobotCommand, RobotListOptions, RobotNewOptions, RobotOptions};
+pub use show::ShowOptions;
+pub use why_not::WhyNotOptions;
+
 /// Most attempts at the same time.
 const MOST_THREADS: u64 = 256;
 
@@ -30,6 +38,7 @@ Examples:
   darrt problems                      the built-in problems: the paper's, and others
   darrt plan plate3                   solve one; writes plate3.plan.json and plate3.html
   darrt show plate3.plan.json         draw a plan again
+  darrt plan plate3 --record r.json   keep the search too; then: darrt show r.json -o tree.graphml
   darrt check plate3.plan.json        judge a plan, for example one edited by hand
   darrt export plate3.plan.json --to json
                                       the plan on its clock, for a controller
@@ -41,12 +50,13 @@ Examples:
 
 Exit codes:
   0    solved, or the plan is accepted
-  1    not solved within the budget; a plan that is executed fails in some run
+  1    not solved within the budget; a plan that is executed fails in some run; an idea has something wrong
   2    bad input or usage
   3    the verifier refuses the plan; with `check --strict` also a plan with warnings
-  4    the output cannot be written
+  4    the output cannot be written, or not be opened
   5    not solved within the budget, and the beginning of a plan is written (PROBLEM.partial.json);
        with `check`: the plan is such a beginning, and right
+  6    proven before the search: the problem, as it is written, has no plan
   130  interrupted";
 
 /// The commands.
@@ -56,6 +66,8 @@ pub enum Command {
     Plan(PlanOptions),
     /// Find out with which changes a problem has a plan
     Explain(ExplainOptions),
+    /// Look at a state, a place of the hand, a grasp or a plan that you have in mind: what is wrong first, and what works nearby
+    WhyNot(WhyNotOptions),
     /// Judge a plan file with the verifier
     Check(CheckOptions),
     /// Execute a plan in physics: free objects, fingers of limited force, errors of perception and motion
@@ -150,7 +162,8 @@ pub struct PlanOptions {
     /// Write the plan here [default: PROBLEM.plan.json in the current folder, without the problem's own ending]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Write the picture here: .html (3-D, moving), .svg, .png or .glb [default: beside the plan, .html]
+    /// Write the picture here: .html (3-D, moving), .svg, .png or .glb [default: beside the plan, .html]. Where there is no
+    /// plan, a page that ends in .why.html tells why
     #[arg(long, value_name = "FILE", conflicts_with = "no_picture")]
     pub picture: Option<PathBuf>,
     /// Write no picture
@@ -168,6 +181,12 @@ pub struct PlanOptions {
     /// Where there is no plan, write down why as JSON
     #[arg(long, value_name = "FILE")]
     pub why: Option<PathBuf>,
+    /// Keep how the search went, as JSON: for `darrt show FILE` and as a layer of the page
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
+    /// Open the page in the browser
+    #[arg(long, conflicts_with = "no_picture")]
+    pub open: bool,
     /// Print nothing but errors
     #[arg(short, long, conflicts_with = "stats")]
     pub quiet: bool,
@@ -230,15 +249,19 @@ Examples:
   darrt execute plate3.plan.json                    once, in a world that is as the plan has it
   darrt execute plate3.plan.json --noise 1          100 times, with the errors of a real robot
   darrt execute plate3.plan.json --noise mine.toml  with errors of your own
+  darrt execute plate3.plan.json --noise 1 --replan closed loop: looks, corrects, plans anew
+  darrt execute plate3.plan.json --noise 1 --predict
+                                                    what to expect, without physics
   darrt execute --print-noise > mine.toml           the errors of a real robot, to copy and edit
 
-The plan is executed as it is, open loop. A run succeeds if every object ends at its goal, within the
+Without --replan the plan is executed as it is, open loop. A run succeeds if every object ends at its goal, within the
 tolerance of the problem, and nothing else was moved. The first departure from the plan is told as the
 cause of a failure. The same plan, noise and seed give the same runs with any number of threads.";
 
 /// Options of `darrt execute`.
 #[derive(Debug, Args)]
 #[command(after_help = EXECUTE_EXAMPLES)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of the command line")]
 pub struct ExecuteOptions {
     /// The plan file
     #[arg(required_unless_present = "print_noise")]
@@ -246,6 +269,12 @@ pub struct ExecuteOptions {
     /// Errors of the world and the robot: a part of those of a real robot, 0 to 1, or a file
     #[arg(long, value_name = "FILE|0..1", default_value = "0", allow_hyphen_values = true)]
     pub noise: String,
+    /// Close the loop: look before every contact and after every drive, correct the arm, plan anew where that is not enough
+    #[arg(long)]
+    pub replan: bool,
+    /// Execute nothing: tell how far off everything may be after every step, and how likely success is
+    #[arg(long, conflicts_with = "runs")]
+    pub predict: bool,
     /// How often [default: once without noise, else 100 times]
     #[arg(long, value_name = "NUMBER", value_parser = run_count, allow_hyphen_values = true)]
     pub runs: Option<u64>,
@@ -255,6 +284,12 @@ pub struct ExecuteOptions {
     /// Runs at the same time [default: one on every core]
     #[arg(long, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
+    /// Write a page of one run beside its plan: the first that fails, else the first
+    #[arg(long, value_name = "FILE", conflicts_with = "predict")]
+    pub page: Option<PathBuf>,
+    /// Write a recording of the same run: joint states and frames, as MCAP
+    #[arg(long, value_name = "FILE", conflicts_with = "predict")]
+    pub mcap: Option<PathBuf>,
     /// Print all runs, with where the objects were after every step, as one JSON object
     #[arg(long, conflicts_with = "quiet")]
     pub json: bool,
@@ -272,19 +307,6 @@ pub struct ProblemsOptions {
     /// Print this built-in problem as a file to copy and edit
     #[arg(long, value_name = "NAME")]
     pub print: Option<String>,
-}
-
-/// Options of `darrt show`.
-#[derive(Debug, Args)]
-pub struct ShowOptions {
-    /// Name of a built-in problem, a problem file, or a plan file (.json)
-    pub source: String,
-    /// Write the picture here: .html (3-D, moving), .svg, .png or .glb [default: PROBLEM.html in the current folder]
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    /// Leave out the small view of every step
-    #[arg(long)]
-    pub overview: bool,
 }
 
 const EXPORT_EXAMPLES: &str = "\
@@ -331,64 +353,6 @@ pub enum ExportFormat {
     Csv,
     /// A recording: joint states, frames and events
     Mcap,
-}
-
-/// Options of `darrt robot`.
-#[derive(Debug, Args)]
-pub struct RobotOptions {
-    /// What to do.
-    #[command(subcommand)]
-    pub command: RobotCommand,
-}
-
-/// What `darrt robot` does.
-#[derive(Debug, Subcommand)]
-pub enum RobotCommand {
-    /// List the robots inside, or print one's robot file or description to copy and edit
-    List(RobotListOptions),
-    /// Read a robot file as planning would, try the robot, draw it, and say what is odd
-    Check(RobotCheckOptions),
-    /// Write a first robot file for a description (URDF), with guesses to look at
-    New(RobotNewOptions),
-}
-
-/// Options of `darrt robot list`.
-#[derive(Debug, Args)]
-pub struct RobotListOptions {
-    /// Print the robot file of this robot
-    #[arg(long, value_name = "NAME")]
-    pub print: Option<String>,
-    /// Print the description of this robot
-    #[arg(long, value_name = "NAME", conflicts_with = "print")]
-    pub print_urdf: Option<String>,
-}
-
-/// Options of `darrt robot check`.
-#[derive(Debug, Args)]
-pub struct RobotCheckOptions {
-    /// A robot file, or a name of `darrt robot list`
-    #[arg(value_name = "FILE|NAME")]
-    pub robot: String,
-    /// Write a first problem for it here
-    #[arg(long, value_name = "FILE")]
-    pub problem: Option<PathBuf>,
-    /// Draw it here: .html (3-D), .svg, .png or .glb [default: NAME.robot.html in the current folder]
-    #[arg(long, value_name = "FILE", conflicts_with = "no_picture")]
-    pub picture: Option<PathBuf>,
-    /// Draw no picture
-    #[arg(long)]
-    pub no_picture: bool,
-}
-
-/// Options of `darrt robot new`.
-#[derive(Debug, Args)]
-pub struct RobotNewOptions {
-    /// The description
-    #[arg(value_name = "URDF")]
-    pub urdf: PathBuf,
-    /// Write the robot file here [default: beside the description, .toml]
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
 }
 
 /// Options of `darrt schema`.
@@ -447,6 +411,9 @@ pub struct BenchOptions {
     /// Write a page with curves and tables here, .html
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+    /// Keep the plan of every run, and a page of it, in this folder; the report links to them
+    #[arg(long, value_name = "FOLDER")]
+    pub keep: Option<PathBuf>,
     /// Write a log for `ompl_benchmark_statistics` per problem into this folder
     #[arg(long, value_name = "FOLDER")]
     pub ompl: Option<PathBuf>,
@@ -469,6 +436,9 @@ The same problem and seed give the same file. Every problem is valid and was sol
 pub struct GenerateOptions {
     /// Name of a built-in problem, or a problem file
     pub problem: String,
+    /// For this robot instead of the problem's: a robot file, or a name of `darrt robot list`
+    #[arg(long, value_name = "FILE|NAME")]
+    pub robot: Option<String>,
     /// Seeds from A to B - 1, or how many from 0 on: one problem each
     #[arg(long, value_name = "A..B", default_value = "1", value_parser = seeds, allow_hyphen_values = true)]
     pub seeds: Range<u64>,

@@ -10,6 +10,7 @@
 //! | what is one run, and may two be compared? | [`record`], [`machine`], [`digest`] |
 //! | how are runs that ended without a plan counted? | [`survival`], [`bootstrap`], [`statistics`] |
 //! | would restarts help? | [`restarts`] |
+//! | where are the plans? | `kept` |
 
 pub mod bootstrap;
 pub mod collection;
@@ -17,6 +18,7 @@ pub mod digest;
 pub mod error;
 pub mod job;
 pub mod journal;
+pub(crate) mod kept;
 pub mod machine;
 pub mod ompl_log;
 pub mod record;

@@ -12,3 +12,4 @@ pub(crate) mod problems;
 pub(crate) mod robot;
 pub(crate) mod schema;
 pub(crate) mod show;
+pub(crate) mod why_not;

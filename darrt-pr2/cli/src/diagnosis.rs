@@ -14,17 +14,22 @@ pub(crate) mod words;
 
 /// Pairs of bodies that are named.
 const PAIRS: usize = 3;
-/// Lines in all, the first one and the advice among them.
-const LINES: usize = 10;
+/// Lines in all, the first one and the advice among them; one more says where to see it.
+const LINES: usize = 9;
 
 /// Buckets of extensions in which a primitive was not even tried.
 const UNTRIED: [Bucket; 3] = [Bucket::NotUseful, Bucket::NotChosen, Bucket::Budget];
 
-/// At most ten lines: what ended the search, what keeps a plan away, and what may help.
+/// What ended the search, and when.
+pub(crate) fn headline(result: &PlanResult) -> String {
+    format!("{} after {}, {}", result.stop, seconds(result.elapsed), counted(result.iterations, "iteration"))
+}
+
+/// At most nine lines: what ended the search, what keeps a plan away, and what may help.
 pub(crate) fn explain(result: &PlanResult, diagnosis: &Diagnosis) -> String {
-    let first =
-        format!("{} after {}, {}", result.stop, seconds(result.elapsed), counted(result.iterations, "iteration"));
+    let first = headline(result);
     let mut lines: Vec<_> = diagnosis.causes.iter().flat_map(words::of_cause).collect();
+    lines.extend(nearer(result));
     let last = advice(result, diagnosis);
     let room = LINES - 1 - last.len() - usize::from(result.partial.is_some());
     if lines.len() > room {
@@ -57,17 +62,22 @@ fn what_was_met(result: &PlanResult) -> Vec<String> {
     for ((first, second), count) in result.accounts.worst_blocks(PAIRS) {
         lines.push(format!("in the way {}: {first} and {second}", counted(count, "time")));
     }
-    for NearPair { bodies: [first, second], distance_m, is_at_goal } in &result.near {
-        let place = if *is_at_goal { "at the goal" } else { "at the start" };
-        let apart_mm = distance_m * 1000.0;
-        lines.push(format!("nearer than the least margin {place}: {first} and {second}, {apart_mm:.2} mm apart"));
-    }
+    lines.extend(nearer(result));
     lines.extend(never_worked(&result.accounts));
     lines
 }
 
+/// What the problem itself puts nearer to each other than the margin.
+fn nearer(result: &PlanResult) -> impl Iterator<Item = String> + '_ {
+    result.near.iter().map(|NearPair { bodies: [first, second], distance_m, is_at_goal }| {
+        let place = if *is_at_goal { "at the goal" } else { "at the start" };
+        let apart_mm = distance_m * 1000.0;
+        format!("nearer than the least margin {place}: {first} and {second}, {apart_mm:.2} mm apart")
+    })
+}
+
 /// With as many digits as a short time needs.
-fn seconds(time: Duration) -> String {
+pub(crate) fn seconds(time: Duration) -> String {
     let s = time.as_secs_f64();
     if s < 0.1 { format!("{s:.3} s") } else { format!("{s:.1} s") }
 }
@@ -93,7 +103,7 @@ fn never_worked(accounts: &Accounts) -> Vec<String> {
 }
 
 /// What may help: more time only where nothing was found that keeps a plan away.
-fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> {
+pub(crate) fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> {
     let limit = match result.stop {
         Stop::TimeLimit => "a longer --time-limit",
         Stop::IterationLimit => "more --iterations",
@@ -141,7 +151,7 @@ mod tests {
             plan: None,
             plans: 0,
             near: Vec::new(),
-            doubts: vec!["no way".to_owned()],
+            doubts: vec![darrt_task::planning::Doubt { words: "no way".to_owned(), refuted: None }],
             stop: Stop::TimeLimit,
             accounts,
             iterations,
@@ -152,6 +162,8 @@ mod tests {
             times: darrt_task::profile::Times::default(),
             last_refusal: None,
             partial: None,
+            nearest: None,
+            recording: None,
         }
     }
 
@@ -182,11 +194,11 @@ mod tests {
     }
 
     #[test]
-    fn there_are_never_more_than_ten_lines() {
-        for n in [1, 8, 9, 40] {
+    fn there_are_never_more_than_nine_lines_and_one_for_the_page() {
+        for n in [1, 7, 8, 40] {
             let text = explain(&result(40), &diagnosis(refused(n), Outcome::MayBeFound));
-            assert!(text.lines().count() <= 10, "{text}");
-            assert_eq!(text.contains("more, with --stats"), n > 8, "{text}");
+            assert!(text.lines().count() <= 9, "{text}");
+            assert_eq!(text.contains("more, with --stats"), n > 7, "{text}");
         }
     }
 

@@ -3,6 +3,9 @@
 use darrt_task::picture::{self, Extent, Format, Story, raster};
 use darrt_task::plan_file::{PlanFile, Waypoint};
 use darrt_task::robot::RobotFacts;
+use darrt_task::viewer::data::ViewerData;
+use darrt_task::viewer::search::SearchData;
+use darrt_task::viewer::why::WhyData;
 use darrt_task::viewer::{self, RobotModel, ViewerError};
 
 use crate::exit::Failure;
@@ -27,7 +30,21 @@ pub(crate) fn file(
     })
 }
 
-fn data(story: &Story, plan: Option<&PlanFile>, robot: &RobotFacts) -> Result<viewer::data::ViewerData, ViewerError> {
+/// The page, with what else there is to tell: why there is no plan, how the search went.
+///
+/// # Errors
+/// As [`file`].
+pub(crate) fn page(
+    story: &Story,
+    plan: Option<&PlanFile>,
+    robot: &RobotFacts,
+    (extent, why, search): (Extent, Option<WhyData>, Option<SearchData>),
+) -> Result<Vec<u8>, Failure> {
+    let data = ViewerData { why, search, ..data(story, plan, robot)? };
+    Ok(viewer::page(&data, &picture::draw(story, extent))?.into_bytes())
+}
+
+fn data(story: &Story, plan: Option<&PlanFile>, robot: &RobotFacts) -> Result<ViewerData, ViewerError> {
     let robot = RobotModel::of(robot)?;
     match plan {
         Some(plan) => viewer::of_plan(plan, &story.note, &robot),

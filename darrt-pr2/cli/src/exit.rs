@@ -6,7 +6,9 @@ use crate::bench::BenchError;
 use crate::generate::GenerateError;
 use darrt_task::picture::PictureError;
 use darrt_task::plan_file::PlanFileError;
+use darrt_task::planning_error::PlanningError;
 use darrt_task::problem_file::ProblemFileError;
+use darrt_task::recording::RecordingError;
 use darrt_task::robot_file::RobotFileError;
 use darrt_task::text::on_one_line;
 use darrt_task::viewer::ViewerError;
@@ -27,6 +29,8 @@ pub enum Exit {
     /// The budget ended before a plan was found, and the beginning of one is written; or a plan that is judged is such a
     /// beginning, and right.
     Partial = 5,
+    /// It is proven before the search that the problem, as it is written, has no plan.
+    Impossible = 6,
     /// Interrupted by the user.
     Interrupted = 130,
 }
@@ -58,6 +62,13 @@ impl Failure {
     }
 }
 
+impl From<PlanningError> for Failure {
+    fn from(error: PlanningError) -> Self {
+        let exit = if error.is_impossible() { Exit::Impossible } else { Exit::BadInput };
+        Self::new(exit, on_one_line(&error.to_string()))
+    }
+}
+
 impl From<ProblemFileError> for Failure {
     fn from(error: ProblemFileError) -> Self {
         Self::input(error.to_string())
@@ -85,7 +96,7 @@ impl From<ViewerError> for Failure {
 impl From<BenchError> for Failure {
     fn from(error: BenchError) -> Self {
         let exit = match error {
-            BenchError::Unwritable { .. } | BenchError::Locked { .. } => Exit::CannotWrite,
+            BenchError::Unwritable { .. } | BenchError::Locked { .. } | BenchError::Kept { .. } => Exit::CannotWrite,
             _ => Exit::BadInput,
         };
         Self::new(exit, on_one_line(&error.to_string()))
@@ -97,6 +108,16 @@ impl From<GenerateError> for Failure {
         let exit = match error {
             GenerateError::Cancelled => Exit::Interrupted,
             GenerateError::NoneSolved { .. } => Exit::NotSolved,
+        };
+        Self::new(exit, on_one_line(&error.to_string()))
+    }
+}
+
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Self {
+        let exit = match error {
+            RecordingError::Write { .. } => Exit::CannotWrite,
+            _ => Exit::BadInput,
         };
         Self::new(exit, on_one_line(&error.to_string()))
     }

@@ -15,13 +15,15 @@
 //! | which commands and options are there? | [`args`], [`choices`], [`safety`] |
 //! | what does each command do? | `command` |
 //! | how did it end? | [`exit`] |
-//! | how are texts and files written? | `output`, `drawing` |
+//! | how are texts and files written? | `output`, `drawing`, `why_page` |
+//! | how does a browser open them? | `browser` |
 //! | what is seen while it works? | `progress` |
 //! | how are a plan and the planner's counts told? | `steps`, `statistics`, `diagnosis`, `table` |
 //! | how well does it plan? | [`mod@bench`], [`mod@generate`] |
 
 pub mod args;
 pub mod bench;
+mod browser;
 pub mod choices;
 mod command;
 mod diagnosis;
@@ -34,6 +36,7 @@ pub mod safety;
 mod statistics;
 mod steps;
 mod table;
+mod why_page;
 
 use std::ffi::OsString;
 use std::io::Write as _;
@@ -73,11 +76,14 @@ pub fn run(program: &dyn Program, arguments: impl IntoIterator<Item = OsString>)
 }
 
 fn dispatch(program: &dyn Program, command: &Command) -> Result<Exit, Failure> {
-    use crate::command::{bench, check, execute, explain, export, generate, plan, problems, robot, schema, show};
+    use crate::command::{
+        bench, check, execute, explain, export, generate, plan, problems, robot, schema, show, why_not,
+    };
     let mut output = Output::stdout();
     match command {
         Command::Plan(options) => plan::run(program, options, &mut output),
         Command::Explain(options) => explain::run(program, options, &mut output),
+        Command::WhyNot(options) => why_not::run(program, options, &mut output),
         Command::Check(options) => check::run(program, options, &mut output),
         Command::Execute(options) => execute::run(program, options, &mut output),
         Command::Problems(options) => problems::run(program, options, &mut output),

@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 
-use comfy_table::ContentArrangement;
 use darrt_core::observe::accounts::{Accounts, Bucket};
 
 use super::table;
@@ -10,8 +9,6 @@ use darrt_task::text::counted;
 
 /// Pairs of bodies that are listed.
 const PAIRS: usize = 10;
-/// Width of the table of counts in characters.
-const WIDTH: u16 = 118;
 
 /// Where the attempts of every primitive ended, and which bodies were most often in the way.
 pub(crate) fn report(accounts: &Accounts) -> String {
@@ -37,9 +34,8 @@ pub(crate) fn report(accounts: &Accounts) -> String {
 /// One column per primitive, one row per bucket that is not empty, and the sum of all.
 fn counts(accounts: &Accounts) -> String {
     let rows: Vec<_> = accounts.rows().collect();
-    let names = rows.iter().map(|(name, _)| name.replace('-', " "));
+    let names = rows.iter().map(|(name, _)| name.replace('-', "-\n"));
     let mut table = table::with_header(std::iter::once("ends in".to_owned()).chain(names));
-    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
     for bucket in Bucket::ALL {
         let of = |counts: &[u64; Bucket::ALL.len()]| counts.get(bucket as usize).copied().unwrap_or(0);
         if rows.iter().any(|(_, counts)| of(counts) > 0) {

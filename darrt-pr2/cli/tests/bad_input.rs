@@ -154,34 +154,37 @@ fn grasps_fit_their_object() {
 
 #[test]
 fn goals_are_possible() {
-    all_refused(&[
-        (
-            GOAL,
-            "on = \"side table\"\nat = [-1.165, -1.115]",
-            &["`goal.object[0].at`", "`plate`", "[-1.165, -1.115]", "0.885 m outside", "`side table`"],
-        ),
+    all_refused(&[(
+        GOAL,
+        "on = \"side table\"\nat = [-1.165, -1.115]",
+        &["`goal.object[0].at`", "`plate`", "[-1.165, -1.115]", "0.885 m outside", "`side table`"],
+    )]);
+    let desk = Desk::new();
+    let hopeless: [(&str, &str, i32, &[&str]); 4] = [
+        ("  \"Straight-Line-Arm-Transit\",\n", "", 2, &["`Pick` is allowed but not `Straight-Line-Arm-Transit`"]),
         (
             GOAL,
             "on = \"central table\"\nat = [0.07, 0.05]",
+            6,
             &["the goal of `plate` is blocked: at (0.070, 0.050, 0.760) it touches `big bowl`"],
-        ),
-        (
-            GOAL,
-            "on = \"central table\"\nregion = { min = [0.05, 0.03], max = [0.08, 0.06] }",
-            &["the goal of `plate` is blocked", "`big bowl`"],
         ),
         (
             "  \"Place\",\n",
             "",
+            6,
             &["the goal of `plate` cannot be reached", "`goal.object[0]`", "`side table`", "`Place` is not among"],
         ),
         (
             "grasps = [\"rim\"]",
             "grasps = []",
+            6,
             &["the goal of `plate` cannot be reached", "`goal.object[0]`", "no `grasps` for Pick"],
         ),
-        ("  \"Straight-Line-Arm-Transit\",\n", "", &["`Pick` is allowed but not `Straight-Line-Arm-Transit`"]),
-    ]);
+    ];
+    for (old, new, exit, parts) in hopeless {
+        desk.problem("bad.toml", &[(old, new)]);
+        desk.plan_hopeless("bad.toml", exit, parts);
+    }
 }
 
 #[test]

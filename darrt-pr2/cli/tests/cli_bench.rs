@@ -157,7 +157,7 @@ fn generated_problems_are_the_same_again_and_told_as_one_family() {
     let (printed, _) = run(folder.path(), &command, 0);
     let rows: Vec<_> = printed.lines().filter(|line| line.contains("bowl")).collect();
     // One row in each table.
-    assert!(rows.len() == 2 && rows.iter().all(|row| row.contains("bowl-g*")), "{printed}");
+    assert!(rows.len() == 3 && rows.iter().all(|row| row.contains("bowl-g*")), "{printed}");
     assert!(rows[0].contains("/3"), "{printed}");
     assert_eq!(runs(&folder.path().join("r.jsonl")).len(), 3);
     std::fs::create_dir(folder.path().join("empty")).unwrap();

@@ -42,7 +42,7 @@ fn a_plan_is_printed_written_drawn_and_accepted() {
     let folder = tempfile::tempdir().unwrap();
     solved_problem(folder.path());
     let (printed, complaint) = run(folder.path(), &["plan", "easy.toml", "--seed", "3"], 0);
-    for words in ["solved in", "seed 3", "primitive", "waypoints", "verified: ", "easy.plan.json", "easy.html"] {
+    for words in ["solved in", "seed 3", "primitive", "object moves", "verified: ", "easy.plan.json", "easy.html"] {
         assert!(printed.contains(words), "{words}: {printed}");
     }
     assert_eq!(complaint, "", "quiet when piped");
@@ -155,8 +155,8 @@ fn a_budget_that_ends_is_explained() {
     }
     assert!(!complaint.contains("doubtful"), "{complaint}");
     assert!(printed.contains("Every extension ends in one row") && printed.contains("3 extensions"), "{printed}");
-    let begun = ["plate3.partial.html", "plate3.partial.json"];
-    assert_eq!(files(folder.path()), begun, "nothing but the beginning is written without a plan");
+    let written = ["plate3.partial.json", "plate3.why.html"];
+    assert_eq!(files(folder.path()), written, "without a plan its beginning is written, and why it is no more");
 }
 
 /// Interrupted after two seconds; the handler is set within moments.

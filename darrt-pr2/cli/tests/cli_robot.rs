@@ -134,7 +134,7 @@ fn what_is_wrong_with_a_robot_file_has_its_line() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (from, to, why) in [
-        ("kind = \"planar\"", "kind = \"differential\"", "is \"differential\", which is not planned with yet"),
+        ("kind = \"planar\"", "kind = \"diferential\"", "did you mean `differential`?"),
         ("to = \"hand\"", "to = \"hnad\"", "did you mean `hand`?"),
         ("from = \"wagon\"", "from = \"forearm\"", "is moved by 3 joints"),
         ("joint = \"left_jaw\"", "joint = \"right_jaw\"", "follows `left_jaw`: name that one"),
@@ -180,4 +180,38 @@ fn a_robot_that_nobody_has_is_named() {
     let said = refused(folder.path(), &["plan", "bowl", "--robot", "mobil-arm"]);
     assert!(said.contains("did you mean `mobile-arm`?"), "{said}");
     assert!(refused(folder.path(), &["plan", "bowl", "--robot", "none.toml"]).contains("none.toml"));
+}
+
+#[test]
+fn a_base_with_two_wheels_drives_along_its_heading() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    done(folder, &["plan", "bowl", "--robot", "panda-arm", "--no-picture"]);
+    done(folder, &["check", "bowl.plan.json"]);
+    let path = folder.join("bowl.plan.json");
+    let mut plan: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    let numbers = |waypoint: &serde_json::Value| [0, 1, 2].map(|i| waypoint["base"][i].as_f64().unwrap());
+    let (mut drives, mut corner) = (0, None);
+    for (number, step) in plan["steps"].as_array().unwrap().iter().enumerate() {
+        let bases: Vec<_> = step["waypoints"].as_array().unwrap().iter().map(numbers).collect();
+        for (index, pair) in bases.windows(2).enumerate() {
+            let ([x, y, yaw], [to_x, to_y, to_yaw]) = (pair[0], pair[1]);
+            let (ahead, aside) = (to_x - x, to_y - y);
+            if ahead.hypot(aside) > 1e-3 {
+                assert!((yaw.cos() * aside - yaw.sin() * ahead).abs() < 1e-6, "{pair:?} goes sideways");
+                assert!((yaw - to_yaw).abs() < 1e-6, "{pair:?} turns while it drives");
+                drives += 1;
+                corner = (index > 0).then_some((number, index)).or(corner);
+            }
+        }
+    }
+    assert!(drives > 0);
+    // Whoever wrote the plan: a base that starts to drive before it has turned is refused.
+    let (step, waypoint) = corner.unwrap();
+    let yaw = &mut plan["steps"][step]["waypoints"][waypoint]["base"][2];
+    *yaw = serde_json::json!(yaw.as_f64().unwrap() - 0.01);
+    std::fs::write(&path, plan.to_string()).unwrap();
+    let output = darrt(folder, &["check", "bowl.plan.json"]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(text(&output).contains("the base drives along its heading only, and it turns by"), "{}", text(&output));
 }

@@ -61,7 +61,7 @@ fn a_refused_problem_has_a_diagnosis_too() {
     let block = "[[obstacle]]\nname = \"jar\"\nshape = { box = { size = [0.2, 0.2, 0.2] } }\nat = [-0.1, 1.9, 0.8]\n";
     std::fs::write(folder.path().join("jar.toml"), problem(0.7, block)).unwrap();
     let output = darrt(folder.path(), &["plan", "jar.toml", "--why", "why.json"]);
-    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(output.status.code(), Some(6));
     let why = std::fs::read_to_string(folder.path().join("why.json")).unwrap();
     let why: Diagnosis = serde_json::from_str(&why).unwrap();
     assert!(matches!(&why.causes[..], [Cause::GoalOccupied { by, .. }] if by == "jar"), "{why:?}");

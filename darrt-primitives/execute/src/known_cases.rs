@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test says what is wrong by panicking")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of time steps")]
 
-use darrt_primitives::kinematics::RobotDescription;
+use darrt_primitives::kinematics::{MeshPlaces, RobotDescription};
 use darrt_primitives::push::Friction;
 use darrt_primitives::push::limit_surface::PressureConstant;
 use darrt_primitives::push::one_point::DiscDrift;
@@ -165,7 +165,7 @@ fn hand(roll: f64, pitch: f64) -> Robot {
     let names = |names: &[&str]| names.iter().map(ToString::to_string).collect::<Vec<_>>();
     Robot::new(&RobotFacts {
         description: Arc::new(RobotDescription::from_text(&text).unwrap()),
-        mesh_folders: Vec::new(),
+        meshes: MeshPlaces::default(),
         arm_joints: Vec::new(),
         finger_joint: "opening".to_owned(),
         tool_link: "palm".to_owned(),
@@ -180,6 +180,7 @@ fn hand(roll: f64, pitch: f64) -> Robot {
         payload_kg: 2.0,
         push_force_n: 30.0,
         is_bolted: false,
+        drives_along_heading: false,
         motion: MotionLimits::default(),
     })
     .unwrap()

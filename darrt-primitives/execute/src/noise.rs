@@ -193,6 +193,11 @@ impl Draws {
         (0..count).map(|_| 1e-3 * self.model.joint_bias_mrad * self.normal()).collect()
     }
 
+    /// The error with which a body is seen.
+    pub(crate) fn sight(&mut self) -> PlanarError {
+        self.planar(self.model.detection_m, self.model.detection_deg)
+    }
+
     /// The error of the base after a drive that began with error `before`.
     pub(crate) fn drive(&mut self, before: PlanarError) -> PlanarError {
         let new = self.planar(self.model.base_m, self.model.base_deg);

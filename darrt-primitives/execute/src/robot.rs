@@ -1,7 +1,7 @@
 //! The robot: its links as solids, and its hand as a table of where the fingers are at which opening.
 
+use darrt_primitives::kinematics::link_bodies;
 use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
-use darrt_primitives::kinematics::{link_bodies, mesh_folders};
 use darrt_task::robot::RobotFacts;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rapier3d_f64::prelude::Pose;
@@ -23,6 +23,8 @@ pub(crate) struct Robot {
     pub(crate) finger: usize,
     pub(crate) tool: usize,
     pub(crate) tips: [usize; 2],
+    /// How far the fingertips reach beyond the tool frame, out of the hand, m.
+    pub(crate) reach_beyond_tool_m: f64,
     /// By link: does no joint move it?
     pub(crate) is_base: Vec<bool>,
     pub(crate) hand: Hand,
@@ -67,7 +69,7 @@ impl Robot {
     pub(crate) fn new(facts: &RobotFacts) -> Result<Self, ExecuteError> {
         let description = &*facts.description;
         let tree = KinematicTree::new(description)?;
-        let bodies = link_bodies(description, &tree, &mesh_folders(&facts.mesh_folders))?;
+        let bodies = link_bodies(description, &tree, &facts.meshes.paths())?;
         let part = |body: &darrt_geom::Body| {
             let parts = body.parts.iter();
             parts.map(|part| solids::of_part(&body.name, &part.shape, &part.body_from_shape)).collect()
@@ -90,6 +92,13 @@ impl Robot {
         }
         let between = between(&tree, &pieces, tool, tips);
         let hand = Hand::new(&tree, finger, tool, tips, between)?;
+        let tip_pieces = pieces.get(tips[0]).into_iter().flatten();
+        let tool_from_tip = hand.at_joint(hand.closed()).tool_from_tip[0];
+        let reach = tip_pieces.map(|piece| {
+            let at = Pose::from(tool_from_tip) * piece.body_from_piece;
+            piece.shape.compute_aabb(&at).maxs.x
+        });
+        let reach_beyond_tool_m = reach.fold(0.0, f64::max);
         Ok(Self {
             tree,
             pieces,
@@ -97,6 +106,7 @@ impl Robot {
             finger,
             tool,
             tips,
+            reach_beyond_tool_m,
             is_base,
             hand,
             grip_force_n: facts.grip_force_n,

@@ -1,38 +1,61 @@
-//! One execution: the plan as it is, open loop, in a world that may be off from what it knows.
+//! One execution, in a world that may be off from what the plan knows: the plan as it is, or looking where everything is on the way.
+
+use std::sync::Arc;
 
 use darrt_core::budget::Cancel;
 use darrt_geom::Scene;
-use darrt_primitives::contract::HandUse;
 use darrt_task::plan_file::PlanFile;
-use darrt_task::problem_file::ProblemFile;
+use darrt_task::problem_file::{ProblemFile, Symmetry};
 use darrt_task::robot::RobotFacts;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use serde::Serialize;
 
+use crate::arm::Arm;
+use crate::course::Course;
 use crate::error::ExecuteError;
-use crate::goal::{self, Now, ObjectEnd};
-use crate::noise::{Draws, NoiseModel, PlanarError};
+use crate::goal::ObjectEnd;
+use crate::noise::{Draws, NoiseModel};
+use crate::performance::Performance;
+use crate::recording::Recording;
 use crate::robot::Robot;
-use crate::stage::{Owner, STEP_S, Scenery, Stage, TrueObject};
-use crate::timeline::{TimedStep, Timeline};
-use crate::watch::{Cause, Departure, Event, Watch};
-
-/// Time that things are given to come to rest before the plan begins and when it is over, s.
-const SETTLE_S: f64 = 0.5;
-/// Time steps between two looks at where the objects are: a tenth of a second.
-const LOOK_EVERY: u64 = 24;
+use crate::stage::{Owner, Scenery, TrueObject};
+use crate::watch::{Departure, Event};
 
 /// A plan ready to be executed any number of times.
 #[derive(Debug)]
 pub struct Execution<'a> {
-    problem: &'a ProblemFile,
-    primitives: Vec<String>,
-    robot: Robot,
-    scenery: Scenery,
-    scene: Scene,
-    timeline: Timeline,
+    pub(crate) problem: &'a ProblemFile,
+    pub(crate) plan: &'a PlanFile,
+    pub(crate) facts: &'a RobotFacts,
+    pub(crate) robot: Robot,
+    pub(crate) arm: Arm,
+    pub(crate) scenery: Scenery,
+    pub(crate) scene: Scene,
+    pub(crate) course: Arc<Course>,
     starts: Vec<Isometry3<f64>>,
-    depths: Vec<f64>,
+    pub(crate) depths: Vec<f64>,
+}
+
+/// Who makes another plan when the one under way no longer fits.
+pub trait Replan: Sync {
+    /// A plan for `problem`, which is as the robot sees the world now, from `old` with what of it still fits; `None` if there is
+    /// none. The same for the same arguments.
+    fn replan(&self, problem: &ProblemFile, old: &PlanFile) -> Option<PlanFile>;
+}
+
+/// What a robot does about what it sees.
+#[derive(Clone, Copy)]
+pub enum Loop<'a> {
+    /// Nothing: it does not look.
+    Open,
+    /// It looks before every contact and after every drive, corrects the arm, and has another plan made where that is not enough.
+    Closed(&'a dyn Replan),
+}
+
+impl std::fmt::Debug for Loop<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(if matches!(self, Self::Open) { "Open" } else { "Closed" })
+    }
 }
 
 /// How one execution went.
@@ -52,13 +75,35 @@ pub struct RunReport {
     pub objects: Vec<ObjectEnd>,
     /// Where they were after every step.
     pub trail: Vec<StepEnd>,
-    /// Seconds on the clock of the plan.
+    /// What was done about errors; `None` open loop.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub feedback: Option<FeedbackCount>,
+    /// Seconds that it took.
     pub seconds: f64,
+}
+
+/// What a robot that looks has done.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct FeedbackCount {
+    /// How often it looked.
+    pub looks: usize,
+    /// Contacts that were corrected.
+    pub corrections: usize,
+    /// Corrections that were too far for the arm.
+    pub out_of_reach: usize,
+    /// Plans that were made on the way.
+    pub replans: usize,
+    /// Times that another plan was wanted and none was found.
+    pub failed_replans: usize,
+    /// Times that it ran into something or was held up, and went back the way it had come.
+    pub backed_off: usize,
 }
 
 /// Where the objects are after a step.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StepEnd {
+    /// The plan: 0 is the one that was to be executed, 1 the first that was made on the way.
+    pub plan: usize,
     /// The step, from 1.
     pub step: usize,
     /// Its primitive.
@@ -74,14 +119,16 @@ impl<'a> Execution<'a> {
     ///
     /// # Errors
     /// [`ExecuteError`] for a plan, a problem or a robot of which that cannot be done.
-    pub fn new(plan: &'a PlanFile, facts: &RobotFacts) -> Result<Self, ExecuteError> {
+    pub fn new(plan: &'a PlanFile, facts: &'a RobotFacts) -> Result<Self, ExecuteError> {
         let problem = &plan.problem;
         let robot = Robot::new(facts)?;
         let geometry = problem.geometry()?;
         Ok(Self {
             problem,
-            primitives: plan.steps.iter().map(|step| step.primitive.to_string()).collect(),
-            timeline: Timeline::new(plan, facts, &robot)?,
+            plan,
+            facts,
+            course: Arc::new(Course::new(plan, facts, &robot)?),
+            arm: Arm::new(&robot, facts)?,
             scenery: Scenery::new(problem)?,
             robot,
             starts: geometry.objects.iter().map(|object| object.world_from_object).collect(),
@@ -92,14 +139,37 @@ impl<'a> Execution<'a> {
 
     /// Seconds that the plan takes on its clock.
     pub fn duration_s(&self) -> f64 {
-        self.timeline.duration_s()
+        self.course.timeline.duration_s()
     }
 
     /// Executes the plan once; `None` if it was cancelled meanwhile.
     ///
     /// # Laws
-    /// The report depends on the plan, the noise, `seed` and `run` alone.
-    pub fn run(&self, noise: &NoiseModel, seed: u64, run: u64, cancel: &Cancel) -> Option<RunReport> {
+    /// The report depends on the plan, the noise, `seed`, `run` and what is done about errors alone.
+    pub fn run(
+        &self,
+        noise: &NoiseModel,
+        (seed, run): (u64, u64),
+        control: Loop<'_>,
+        cancel: &Cancel,
+    ) -> Option<RunReport> {
+        Some(self.performance(noise, (seed, run), control).perform(run, cancel)?.0)
+    }
+
+    /// The same run, with every moment of it.
+    pub fn record(
+        &self,
+        noise: &NoiseModel,
+        (seed, run): (u64, u64),
+        control: Loop<'_>,
+        cancel: &Cancel,
+    ) -> Option<(RunReport, Recording)> {
+        let (report, recording) = self.performance(noise, (seed, run), control).recorded().perform(run, cancel)?;
+        Some((report, recording?))
+    }
+
+    /// The world at the start of a run.
+    fn performance<'b>(&'b self, noise: &NoiseModel, (seed, run): (u64, u64), control: Loop<'b>) -> Performance<'b> {
         let mut draws = Draws::new(*noise, seed, run);
         let objects = self.starts.iter().zip(&self.problem.objects).map(|(pose, spec)| {
             let draw = draws.object();
@@ -121,22 +191,12 @@ impl<'a> Execution<'a> {
                 *slot = bias;
             }
         }
-        let mut now = Performance::begin(self, &objects, biases);
-        let mut trail = Vec::new();
-        for (index, step) in self.timeline.steps.iter().enumerate() {
-            if step.contract.drives() {
-                now.next_error = draws.drive(now.error);
-            }
-            if cancel.is_cancelled() {
-                return None;
-            }
-            let is_over = now.step(index, step);
-            trail.push(now.end_of(index, step));
-            if is_over {
-                break;
-            }
-        }
-        Some(now.report(run, trail))
+        Performance::begin(self, &objects, biases, (noise, draws), control)
+    }
+
+    /// Is an object the same however it is turned?
+    pub(crate) fn is_round(&self, object: usize) -> bool {
+        self.problem.objects.get(object).is_some_and(|object| object.symmetry() == Symmetry::Z)
     }
 
     fn name(&self, owner: Owner) -> String {
@@ -148,14 +208,17 @@ impl<'a> Execution<'a> {
         name.unwrap_or_else(|| "?".to_owned())
     }
 
-    fn primitive(&self, step: usize) -> String {
-        self.primitives.get(step).cloned().unwrap_or_default()
-    }
-
-    fn departure(&self, step: usize, time: f64, event: &Event) -> Departure {
+    pub(crate) fn departure(
+        &self,
+        course: &Course,
+        (plan, step): (usize, usize),
+        time: f64,
+        event: &Event,
+    ) -> Departure {
         Departure {
+            plan,
             step: step + 1,
-            primitive: self.primitive(step),
+            primitive: course.primitive(step),
             time,
             cause: event.cause,
             body: self.name(event.body),
@@ -165,155 +228,4 @@ impl<'a> Execution<'a> {
             force_n: event.force_n,
         }
     }
-}
-
-/// An execution under way.
-struct Performance<'a> {
-    of: &'a Execution<'a>,
-    stage: Stage<'a>,
-    watch: Watch,
-    biases: Vec<f64>,
-    /// Of the base, before and after the drive under way.
-    error: PlanarError,
-    next_error: PlanarError,
-    departure: Option<Departure>,
-    stopped: Option<Departure>,
-    ticks: u64,
-    /// By object.
-    planned: Vec<Isometry3<f64>>,
-}
-
-impl<'a> Performance<'a> {
-    fn begin(of: &'a Execution<'a>, objects: &[TrueObject], biases: Vec<f64>) -> Self {
-        let (base, mut joints) = of.timeline.start();
-        add(&mut joints, &biases);
-        let mut stage = Stage::new(&of.robot, &of.scenery, objects, base, &joints);
-        let finger = joints.get(of.robot.finger).copied().unwrap_or_default();
-        for _ in 0..ticks(SETTLE_S) {
-            stage.step(base, &mut joints, finger);
-        }
-        let watch = Watch::new(&stage, objects.len(), of.scenery.floor);
-        let error = [0.0; 3];
-        let planned = of.starts.clone();
-        Self { of, stage, watch, biases, error, next_error: error, departure: None, stopped: None, ticks: 0, planned }
-    }
-
-    /// Executes one step; true if that was the last.
-    fn step(&mut self, index: usize, step: &TimedStep) -> bool {
-        self.watch.begin(&self.stage, &self.planned);
-        let (length_s, mut elapsed) = (step.end_s - step.begin_s, 0);
-        let count = ticks(length_s);
-        while elapsed < count {
-            elapsed += 1;
-            let time_s = step.begin_s + elapsed as f64 * STEP_S;
-            let mut command = self.of.timeline.at(step, time_s, &self.of.robot);
-            let error = [0, 1, 2].map(|i| self.error[i] + command.done * (self.next_error[i] - self.error[i]));
-            let base = [0, 1, 2].map(|i| command.base[i] + error[i]);
-            add(&mut command.joints, &self.biases);
-            self.stage.step(base, &mut command.joints, command.finger);
-            self.ticks += 1;
-            let is_held = step.is_holding(time_s);
-            let mut event = self.watch.touch(&self.stage, step, is_held);
-            if event.is_none() && (elapsed % LOOK_EVERY == 0 || elapsed == count) {
-                event = self.watch.look(&self.stage, step, is_held);
-            }
-            if let Some(event) = event {
-                self.note(index, elapsed as f64 / count as f64, &event);
-                if self.stopped.is_some() {
-                    return true;
-                }
-            }
-        }
-        self.error = self.next_error;
-        self.planned.clone_from(&step.ends);
-        if let Some(event) = self.watch.end(&self.stage, step) {
-            self.note(index, 1.0, &event);
-        }
-        false
-    }
-
-    /// The first event is the departure; what follows is its consequence.
-    fn note(&mut self, step: usize, time: f64, event: &Event) {
-        if self.departure.is_none() {
-            self.departure = Some(self.of.departure(step, time, event));
-        }
-        if event.is_final() {
-            self.stopped = Some(self.of.departure(step, time, event));
-        }
-    }
-
-    fn end_of(&self, index: usize, step: &TimedStep) -> StepEnd {
-        let pairs = || step.ends.iter().enumerate().map(|(object, end)| (self.stage.object(object), end));
-        StepEnd {
-            step: index + 1,
-            primitive: self.of.primitive(index),
-            off_m: pairs().map(|(now, end)| (now.translation.vector - end.translation.vector).norm()).collect(),
-            lean_deg: pairs().map(|(now, end)| goal::lean_deg(&now, end)).collect(),
-        }
-    }
-
-    fn report(mut self, run: u64, trail: Vec<StepEnd>) -> RunReport {
-        let last = self.of.timeline.steps.last();
-        if let (Some(step), false) = (last, self.stopped.is_some()) {
-            let mut command = self.of.timeline.at(step, step.end_s, &self.of.robot);
-            add(&mut command.joints, &self.biases);
-            let base = [0, 1, 2].map(|i| command.base[i] + self.error[i]);
-            for _ in 0..ticks(SETTLE_S) {
-                self.stage.step(base, &mut command.joints, command.finger);
-            }
-        }
-        let held = last.filter(|step| step.contract.hand != HandUse::LetsGo).and_then(|step| step.holds);
-        let objects = self.of.problem.objects.iter().enumerate().map(|(index, object)| {
-            let is_planned_in_hand = held.is_some_and(|(held, _)| held == index);
-            let now = Now {
-                pose: self.stage.object(index),
-                is_in_hand: is_planned_in_hand && !self.stage.is_closed(),
-                planned: self.planned.get(index).copied().unwrap_or_else(Isometry3::identity),
-                depth_m: self.of.depths.get(index).copied().unwrap_or_default(),
-            };
-            goal::end(self.of.problem, &self.of.scene, &object.name, &now)
-        });
-        let objects: Vec<ObjectEnd> = objects.collect();
-        let is_success = self.stopped.is_none() && objects.iter().all(|object| object.is_there);
-        let is_near = self.stopped.is_none() && objects.iter().all(|object| object.is_near);
-        if !is_success && self.departure.is_none() {
-            self.departure = self.added_up(&objects);
-        }
-        let seconds = self.ticks as f64 * STEP_S;
-        RunReport {
-            run,
-            is_success,
-            is_near,
-            departure: self.departure,
-            stopped: self.stopped,
-            objects,
-            trail,
-            seconds,
-        }
-    }
-
-    /// What is off at the end though nothing was far off on the way.
-    fn added_up(&self, objects: &[ObjectEnd]) -> Option<Departure> {
-        let index = objects.iter().position(|object| !object.is_there)?;
-        let object = objects.get(index)?;
-        let event = Event {
-            cause: Cause::Added,
-            body: Owner::Object(index),
-            other: None,
-            off_m: object.off_m,
-            lean_deg: object.lean_deg,
-            force_n: 0.0,
-        };
-        Some(self.of.departure(self.of.timeline.steps.len().saturating_sub(1), 1.0, &event))
-    }
-}
-
-fn add(joints: &mut [f64], biases: &[f64]) {
-    joints.iter_mut().zip(biases).for_each(|(joint, bias)| *joint += bias);
-}
-
-/// Time steps in so many seconds.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "seconds of a plan, not negative")]
-fn ticks(seconds: f64) -> u64 {
-    (seconds / STEP_S).ceil().clamp(0.0, 1e9) as u64
 }

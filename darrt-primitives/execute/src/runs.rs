@@ -8,7 +8,7 @@ use darrt_core::budget::Cancel;
 use serde::Serialize;
 
 use crate::noise::NoiseModel;
-use crate::run::{Execution, RunReport};
+use crate::run::{Execution, Loop, RunReport};
 use crate::watch::Cause;
 
 /// What many runs came to.
@@ -23,7 +23,9 @@ pub struct Runs {
 /// Why runs failed, and how often.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FailureCount {
-    /// The step in which they parted from the plan, from 1.
+    /// The plan: 0 is the one that was to be executed, 1 the first that was made on the way.
+    pub plan: usize,
+    /// The step in which they parted from it, from 1.
     pub step: usize,
     /// Its primitive.
     pub primitive: String,
@@ -42,6 +44,7 @@ pub struct FailureCount {
 pub fn execute(
     execution: &Execution<'_>,
     noise: &NoiseModel,
+    control: Loop<'_>,
     (seed, count): (u64, u64),
     threads: usize,
     cancel: &Cancel,
@@ -55,7 +58,7 @@ pub fn execute(
             if run >= count {
                 return;
             }
-            let Some(report) = execution.run(noise, seed, run, cancel) else { return };
+            let Some(report) = execution.run(noise, (seed, run), control, cancel) else { return };
             done(&report);
             if let Ok(mut all) = all.lock() {
                 all.insert(run, report);
@@ -85,13 +88,14 @@ impl Runs {
 
     /// The failures by step and cause, the most frequent first.
     pub fn failures(&self) -> Vec<FailureCount> {
-        let mut counts: BTreeMap<(usize, Cause, String), (String, usize)> = BTreeMap::new();
+        let mut counts: BTreeMap<(usize, usize, Cause, String), (String, usize)> = BTreeMap::new();
         for departure in self.runs.iter().filter(|run| !run.is_success).filter_map(|run| run.departure.as_ref()) {
             let other = departure.other.as_ref().map_or_else(String::new, |other| format!(", {other}"));
-            let key = (departure.step, departure.cause, format!("{}{other}", departure.body));
+            let key = (departure.plan, departure.step, departure.cause, format!("{}{other}", departure.body));
             counts.entry(key).or_insert_with(|| (departure.primitive.clone(), 0)).1 += 1;
         }
-        let counts = counts.into_iter().map(|((step, cause, bodies), (primitive, count))| FailureCount {
+        let counts = counts.into_iter().map(|((plan, step, cause, bodies), (primitive, count))| FailureCount {
+            plan,
             step,
             primitive,
             cause,

@@ -2,7 +2,7 @@
 
 use darrt_core::budget::Cancel;
 use darrt_primitives::contract::{Contract, HandUse};
-use darrt_task::clock::{TimedPlan, give_clock};
+use darrt_task::clock::{EventKind, TimedPlan, give_clock};
 use darrt_task::plan_file::{PlanFile, Step};
 use darrt_task::robot::RobotFacts;
 use darrt_task::verify::VerifyOptions;
@@ -42,6 +42,10 @@ pub(crate) struct TimedStep {
     /// Index of the object in the hand, and its pose in the tool frame.
     pub(crate) holds: Option<(usize, Isometry3<f64>)>,
     pub(crate) pushes: Option<usize>,
+    /// The object that it is about.
+    pub(crate) object: Option<usize>,
+    /// Is it a good time to look where everything is before it begins?
+    pub(crate) senses: bool,
     /// Where the objects shall be at the end.
     pub(crate) ends: Vec<Isometry3<f64>>,
     pub(crate) begin_s: f64,
@@ -75,9 +79,11 @@ impl Timeline {
         }
         let plan = own.as_ref().unwrap_or(plan);
         let timed = TimedPlan::new(plan, facts)?;
+        let senses = timed.events().into_iter().filter(|event| event.kind == EventKind::Sense).map(|event| event.step);
+        let senses: Vec<_> = senses.collect();
         let steps = plan.steps.iter().enumerate();
-        let steps =
-            steps.map(|(index, step)| timed_step(&timed, plan, robot, index, step)).collect::<Result<_, _>>()?;
+        let steps = steps.map(|(index, step)| timed_step(&timed, plan, robot, &senses, (index, step)));
+        let steps = steps.collect::<Result<_, _>>()?;
         Ok(Self { plan: timed, steps })
     }
 
@@ -90,6 +96,12 @@ impl Timeline {
     pub(crate) fn start(&self) -> ([f64; 3], Vec<f64>) {
         let moment = self.plan.at(0.0);
         (moment.base, moment.joints)
+    }
+
+    /// Where the plan has an object at a time of its clock that lies in this step, by its name.
+    pub(crate) fn object(&self, step: &TimedStep, time_s: f64, name: &str) -> Option<Isometry3<f64>> {
+        let moment = self.plan.at(time_s.min(step.end_s - TIME_ROUNDING_S).max(step.begin_s));
+        self.plan.objects(&moment).get(name).copied()
     }
 
     /// What the robot is told at a time of the plan's clock that lies in this step.
@@ -120,8 +132,8 @@ fn timed_step(
     timed: &TimedPlan,
     plan: &PlanFile,
     robot: &Robot,
-    index: usize,
-    step: &Step,
+    senses: &[usize],
+    (index, step): (usize, &Step),
 ) -> Result<TimedStep, ExecuteError> {
     let place = format!("steps[{index}]");
     let missing = |what, name: &str| ExecuteError::Missing { place: place.clone(), what, name: name.to_owned() };
@@ -153,6 +165,8 @@ fn timed_step(
         contract,
         holds: holds.transpose()?,
         pushes: step.pushes.as_ref().map(object).transpose()?,
+        object: step.object.as_ref().map(object).transpose()?,
+        senses: senses.contains(&index),
         ends: ends.collect::<Result<_, _>>()?,
         begin_s,
         end_s,

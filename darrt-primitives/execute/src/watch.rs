@@ -76,6 +76,8 @@ impl Cause {
 /// Where an execution first parts from its plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Departure {
+    /// The plan: 0 is the one that was to be executed, 1 the first that was made on the way.
+    pub plan: usize,
     /// The step, from 1.
     pub step: usize,
     /// Its primitive.

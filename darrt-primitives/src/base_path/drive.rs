@@ -4,6 +4,7 @@
 use darrt_core::domain::Domain;
 use darrt_core::space::ComponentSpace;
 
+use crate::heading_drive;
 use crate::leg::Leg;
 use crate::manipulator::Manipulator;
 use crate::mode::Contacts;
@@ -27,6 +28,17 @@ impl<'a, M: Manipulator> Drives<'a, M> {
     /// Is nothing in the way between these poses of the base, with this
     /// [care](darrt_core::validity::Validity::most_care)?
     pub(super) fn is_clear(&mut self, care: usize, a: &[f64; 3], b: &[f64; 3]) -> bool {
+        if !self.m.manipulator().drives_along_heading() {
+            return self.is_straight_clear(care, a, b);
+        }
+        let mut here = *a;
+        heading_drive::corners(a, b).into_iter().chain([*b]).all(|next| {
+            let from = std::mem::replace(&mut here, next);
+            self.is_straight_clear(care, &from, &next)
+        })
+    }
+
+    fn is_straight_clear(&mut self, care: usize, a: &[f64; 3], b: &[f64; 3]) -> bool {
         let Self { m, worker, here, next } = self;
         let (m, around) = (*m, &**m.surroundings());
         if a == b {

@@ -22,6 +22,11 @@ impl Obstacle {
     pub(crate) fn new(solid: &Placed<'_>) -> Option<Self> {
         solid.section(solid.z_m).map(|outline| Self { outline, z_m: solid.z_m })
     }
+
+    /// Where it begins along x at the earliest, metres.
+    fn left_m(&self) -> f64 {
+        self.outline.centre().x - self.outline.reach_m()
+    }
 }
 
 /// Where two obstacles are nearest to each other, with nothing between them.
@@ -35,6 +40,11 @@ pub(crate) struct Gap {
 
 /// Wider gaps than this are passed by every robot, metres.
 const WIDE_M: f64 = 2.0;
+
+/// What rounding may do to a length, metres.
+const ROUNDING_M: f64 = 1e-9;
+/// Most gaps that are kept.
+const MOST_GAPS: usize = 10_000;
 
 /// The fixed bodies of a scene.
 #[derive(Debug, Clone, Default)]
@@ -71,8 +81,24 @@ impl FloorPlan {
     }
 
     fn find_gaps(&mut self) {
+        // Those that begin farther to the left than the widest is wide cannot reach here.
+        let mut by_left: Vec<(f64, usize)> = self.obstacles.iter().map(Obstacle::left_m).zip(0..).collect();
+        by_left.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let widest_m = self.obstacles.iter().map(|obstacle| 2.0 * obstacle.outline.reach_m()).fold(0.0, f64::max);
+        let between = |low_m: f64, high_m: f64| {
+            let first = by_left.partition_point(|(left_m, _)| *left_m < low_m - widest_m);
+            by_left
+                .get(first..)
+                .unwrap_or_default()
+                .iter()
+                .take_while(move |(left_m, _)| *left_m <= high_m)
+                .map(|(_, i)| *i)
+        };
         for (i, a) in self.obstacles.iter().enumerate() {
-            for (j, b) in self.obstacles.iter().enumerate().skip(i + 1) {
+            let (left_m, right_m) = (a.left_m(), a.left_m() + 2.0 * a.outline.reach_m());
+            let mut others: Vec<usize> = between(left_m - WIDE_M, right_m + WIDE_M).filter(|j| *j > i).collect();
+            others.sort_unstable();
+            for (j, b) in others.into_iter().filter_map(|j| Some((j, self.obstacles.get(j)?))) {
                 let is_level = a.z_m[0] < b.z_m[1] && b.z_m[0] < a.z_m[1];
                 let beside_m = (a.outline.centre() - b.outline.centre()).norm();
                 if !is_level || beside_m > WIDE_M + a.outline.reach_m() + b.outline.reach_m() {
@@ -80,14 +106,24 @@ impl FloorPlan {
                 }
                 let contact = a.outline.contact(&b.outline, WIDE_M);
                 let (width_m, middle) = (contact.distance_m, a.outline.beside(&contact));
-                let others = self.obstacles.iter().enumerate().filter(|(k, _)| *k != i && *k != j);
-                let is_open = width_m > 0.0
-                    && width_m < WIDE_M
-                    && others.map(|(_, other)| other.outline.beyond_m(&middle)).all(|beyond_m| beyond_m > 0.0);
-                if is_open {
+                let is_filled = |k: usize| {
+                    let outline = self.obstacles.get(k).filter(|_| k != i && k != j).map(|other| &other.outline);
+                    // OPTIMIZATION: mostly the circle around it says that it is elsewhere.
+                    outline.is_some_and(|outline| {
+                        let reach_m = outline.reach_m() + ROUNDING_M;
+                        let is_near = (outline.centre() - middle).norm_squared() <= reach_m * reach_m;
+                        is_near && outline.beyond_m(&middle) <= 0.0
+                    })
+                };
+                if width_m > 0.0 && width_m < WIDE_M && !between(middle.x, middle.x).any(is_filled) {
                     self.gaps.push(Gap { middle, width_m });
                 }
             }
+        }
+        // So many that looking through them would take longer than driving around: the narrowest count.
+        if self.gaps.len() > MOST_GAPS {
+            self.gaps.sort_by(|a, b| a.width_m.total_cmp(&b.width_m));
+            self.gaps.truncate(MOST_GAPS);
         }
     }
 }

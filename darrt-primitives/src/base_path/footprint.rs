@@ -25,7 +25,8 @@ struct Layer {
     outlines: Vec<Outline>,
     /// Farthest from the axis of the base, metres.
     reach_m: f64,
-    /// A disc of this radius about the axis lies in one of the outlines; 0 if none holds the axis.
+    /// A disc of this radius about the axis lies in one of the outlines. Where none holds the axis: minus the distance of the
+    /// nearest one, so that only obstacles that reach so far beyond the axis collide at every yaw.
     inner_m: f64,
 }
 
@@ -153,7 +154,7 @@ impl Footprint {
     /// is negative every yaw collides. Metres, at most `cap_m`.
     pub(super) fn beyond_core_m(&self, at: &Vector2<f64>, cap_m: f64) -> f64 {
         self.standing.iter().fold(cap_m, |least, Standing { outline, layer }| {
-            let inner_m = self.layers.get(*layer).map_or(0.0, |layer| layer.inner_m);
+            let inner_m = self.layers.get(*layer).map_or(f64::NEG_INFINITY, |layer| layer.inner_m);
             if (at - outline.centre()).norm() - outline.reach_m() - inner_m >= least {
                 return least;
             }
@@ -274,7 +275,7 @@ impl Layer {
         outlines.sort_by(|a, b| b.farthest_m().total_cmp(&a.farthest_m()));
         let axis = Vector2::zeros();
         let reach_m = outlines.first().map_or(0.0, Outline::farthest_m);
-        let inner_m = outlines.iter().map(|outline| -outline.beyond_m(&axis)).fold(0.0, f64::max);
+        let inner_m = outlines.iter().map(|outline| -outline.beyond_m(&axis)).fold(f64::NEG_INFINITY, f64::max);
         Self { z_m, outlines, reach_m, inner_m }
     }
 }

@@ -5,6 +5,7 @@ use darrt_core::space::so2::{turn, wrap};
 
 use super::footprint::Footprint;
 use super::nudge::{Nudge, Room};
+use crate::heading_drive;
 
 /// Distances beyond this are not told apart, metres: from a pose that is so clear nobody looks at those around it.
 pub(super) const FAR_M: f64 = 0.3;
@@ -28,6 +29,8 @@ pub(super) struct Terms {
     pub(super) turn_m: f64,
     /// How many times as much a metre counts where nothing may be nearer, at least 1.
     pub(super) tight: f64,
+    /// Does the base drive along its heading only?
+    pub(super) is_along_heading: bool,
 }
 
 /// A pose, and a lower bound of its distance from the obstacles in metres.
@@ -120,11 +123,26 @@ impl<'a> Sight<'a> {
         self.footprint.bounds().interpolate(a, b, share)
     }
 
+    /// What the drive from `a` to `b` costs, metres: a straight one, or by the corners of a base that drives along its heading
+    /// only; `None` if something is in the way.
+    pub(super) fn cost_m(&mut self, a: &Stop, b: &Stop) -> Option<f64> {
+        if !self.terms.is_along_heading {
+            return self.straight_cost_m(a, b);
+        }
+        let (mut here, mut cost_m) = (*a, 0.0);
+        for corner in heading_drive::corners(&a.at, &b.at) {
+            let next = self.stop(&corner)?;
+            cost_m += self.straight_cost_m(&here, &next)?;
+            here = next;
+        }
+        Some(cost_m + self.straight_cost_m(&here, b)?)
+    }
+
     /// What the straight drive from `a` to `b` costs, metres; `None` if something is in the way.
     ///
     /// No point travels farther than the bound on the travel says, so between two poses that are farther from everything
     /// than they are from each other there is nothing.
-    pub(super) fn cost_m(&mut self, a: &Stop, b: &Stop) -> Option<f64> {
+    fn straight_cost_m(&mut self, a: &Stop, b: &Stop) -> Option<f64> {
         let Terms { least_m, wanted_m, resolution_m, tight, .. } = self.terms;
         let whole_m = self.travel_m(&a.at, &b.at);
         let mut tight_m = 0.0;

@@ -1,6 +1,6 @@
 //! What the links of a robot occupy: URDF collision geometry as bodies of the geometry crate.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use darrt_geom::{Body, GeomError, Part, Shape, TriangleMesh};
@@ -12,7 +12,7 @@ use super::urdf::{Geometry, LinkDescription, RobotDescription, UrdfError};
 /// The body of every link, in the order of the tree, in link frames; `None` for a link without collision geometry.
 ///
 /// A mesh becomes its convex hull: solid, and never smaller than the mesh. `mesh_path` says where the file of a mesh
-/// is; see [`no_meshes`] and [`mesh_folders`].
+/// is; see [`no_meshes`] and [`MeshPlaces`](super::MeshPlaces).
 ///
 /// # Errors
 /// [`UrdfError::Mesh`] for a mesh that `mesh_path` does not know or that cannot be read, [`UrdfError::Shape`] for
@@ -33,26 +33,6 @@ pub fn link_bodies(
 /// Knows no mesh: for descriptions made of boxes, balls, cylinders and capsules.
 pub fn no_meshes(_filename: &str) -> Option<PathBuf> {
     None
-}
-
-/// The folder of a robot description and those above it, where packages mostly lie: for [`mesh_folders`].
-pub fn folders_above(description: &Path) -> Vec<PathBuf> {
-    let absolute = std::path::absolute(description).unwrap_or_else(|_| description.to_path_buf());
-    absolute.ancestors().skip(1).map(Path::to_path_buf).collect()
-}
-
-/// Looks meshes up in folders: `package://name/rest` is `name/rest` in the first folder that has it, `file://` and
-/// absolute paths are taken as they are, a relative path is looked up in every folder.
-pub fn mesh_folders(folders: &[PathBuf]) -> impl Fn(&str) -> Option<PathBuf> + '_ {
-    move |filename| {
-        let path = filename.strip_prefix("package://").or_else(|| filename.strip_prefix("file://")).unwrap_or(filename);
-        if filename.starts_with("package://") || Path::new(path).is_relative() {
-            let inside = path.trim_start_matches('/');
-            folders.iter().map(|f| f.join(inside)).find(|p| p.is_file())
-        } else {
-            Some(PathBuf::from(path))
-        }
-    }
 }
 
 fn link_body(link: &LinkDescription, mesh_path: &dyn Fn(&str) -> Option<PathBuf>) -> Result<Option<Body>, UrdfError> {
@@ -77,8 +57,9 @@ fn link_body(link: &LinkDescription, mesh_path: &dyn Fn(&str) -> Option<PathBuf>
 }
 
 /// Where meshes are looked for, for people.
-const NOT_FOUND: &str = "there is no such file: what follows `package://`, and every relative path, is looked for in the \
-                         folder of the robot description and in the folders above it";
+const NOT_FOUND: &str = "there is no such file: what follows `package://` is looked for in the packages that are named (`packages` \
+                         in a robot file), in those of ROS_PACKAGE_PATH and AMENT_PREFIX_PATH, and in the folder of the robot \
+                         description and the folders above it; a relative path in these folders";
 
 fn mesh(
     link: &str,
@@ -95,6 +76,7 @@ fn mesh(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kinematics::MeshPlaces;
 
     fn read(text: &str, mesh_path: &dyn Fn(&str) -> Option<PathBuf>) -> Result<Vec<Option<Body>>, UrdfError> {
         let robot = RobotDescription::from_text(text)?;
@@ -120,8 +102,8 @@ mod tests {
                     <mesh filename='package://shapes/corner.obj' scale='2 2 2'/></geometry></collision></link></robot>";
         let message = read(text, &no_meshes).unwrap_err().to_string();
         assert!(message.contains("link \"a\"") && message.contains("package://shapes/corner.obj"), "{message}");
-        let folders = [PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data")];
-        let bodies = read(text, &mesh_folders(&folders)).unwrap();
+        let data = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+        let bodies = read(text, &MeshPlaces::of(&data.join("any.urdf")).paths()).unwrap();
         let (low, high) = bodies[0].as_ref().unwrap().parts[0].shape.local_aabb();
         assert_eq!((low.x, high.x, high.z), (0.0, 2.0, 2.0));
     }

@@ -1,6 +1,6 @@
 //! Where the meshes of a robot description lie: `package://name/rest` and relative paths.
 //!
-//! No program is asked and no variable of the environment is read here: what the caller knows of packages, it passes in.
+//! No program is asked. Variables of the environment are read by [`MeshPlaces::around`] and nowhere else.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 use darrt_geom::bounded_file::read_text;
 use roxmltree::Document;
 
-use super::collision::folders_above;
 use super::guard;
 
 /// Largest `package.xml` read, bytes.
@@ -51,7 +50,23 @@ impl Folder {
 impl MeshPlaces {
     /// The folder of a description and those above it. Reads the `package.xml` of each that has one.
     pub fn of(description: &Path) -> Self {
-        Self { above: folders_above(description).into_iter().map(Folder::new).collect(), ..Self::default() }
+        let absolute = std::path::absolute(description).unwrap_or_else(|_| description.to_path_buf());
+        let above = absolute.ancestors().skip(1).map(Path::to_path_buf);
+        Self { above: above.map(Folder::new).collect(), ..Self::default() }
+    }
+
+    /// As [`MeshPlaces::of`], and the packages that the environment knows: `ROS_PACKAGE_PATH`, and `share` in each folder of
+    /// `AMENT_PREFIX_PATH`.
+    pub fn around(description: &Path) -> Self {
+        let mut places = Self::of(description);
+        if let Some(list) = std::env::var_os("ROS_PACKAGE_PATH") {
+            places.add_package_path(&list);
+        }
+        if let Some(list) = std::env::var_os("AMENT_PREFIX_PATH") {
+            let shares = std::env::split_paths(&list).filter(|path| !path.as_os_str().is_empty());
+            places.folders.extend(shares.map(|prefix| Folder::new(prefix.join("share"))));
+        }
+        places
     }
 
     /// Adds a package by its name; of two with one name the first counts.
@@ -64,6 +79,11 @@ impl MeshPlaces {
     pub fn add_package_path(&mut self, list: &OsStr) {
         let folders = std::env::split_paths(list).filter(|path| !path.as_os_str().is_empty());
         self.folders.extend(folders.map(Folder::new));
+    }
+
+    /// [`find`](Self::find) as [`link_bodies`](super::link_bodies) asks it.
+    pub fn paths(&self) -> impl Fn(&str) -> Option<PathBuf> + '_ {
+        |filename| self.find(filename)
     }
 
     /// The file of a mesh, as the description writes it; `None` if there is none.

@@ -101,7 +101,8 @@ pub enum PairSamplingError {
 
 /// Samples the pairs of all links with shapes.
 ///
-/// `bodies`: the shape of every link of `tree`, from [`link_bodies`](super::link_bodies). `clearance_m`: nearer than this is too
+/// `bodies`: the shape of every link of `tree`, from [`link_bodies`](super::link_bodies). `held`: variables that stand at a value,
+/// for they do not move while the robot is planned with. `clearance_m`: nearer than this is too
 /// near; touching always is. A pair that is too near in more than `3 / samples` of all configurations is called
 /// [`PairFate::Never`] with a probability of less than 5 % (rule of three).
 ///
@@ -110,8 +111,8 @@ pub enum PairSamplingError {
 pub fn sample_pairs(
     tree: &KinematicTree,
     bodies: &[Option<Body>],
-    clearance_m: f64,
-    samples: usize,
+    held: &[(usize, f64)],
+    (clearance_m, samples): (f64, usize),
     rng: &mut dyn Rng,
 ) -> Result<SampledPairs, PairSamplingError> {
     expect_length("bodies", bodies.len(), tree.link_count())?;
@@ -136,7 +137,13 @@ pub fn sample_pairs(
             pairs.push(SampledPair { first, second, fate: fate.unwrap_or(PairFate::Never) });
         }
     }
-    count(tree, &model, &shaped, (clearance_m, samples), rng, &mut counted)?;
+    let mut ranges = ranges(tree);
+    for (variable, value) in held {
+        if let Some(range) = ranges.get_mut(*variable) {
+            *range = (*value, *value);
+        }
+    }
+    count(tree, (&model, &ranges), &shaped, (clearance_m, samples), rng, &mut counted)?;
     for Counted { pair, hits, .. } in counted {
         if let Some(pair) = pairs.get_mut(pair) {
             pair.fate = match hits {
@@ -161,19 +168,12 @@ struct Counted {
 /// Counts the samples in which the pairs are too near.
 fn count(
     tree: &KinematicTree,
-    model: &CollisionModel,
+    (model, ranges): (&CollisionModel, &[(f64, f64)]),
     shaped: &[(usize, BodyIndex)],
     (clearance_m, samples): (f64, usize),
     rng: &mut dyn Rng,
     counted: &mut [Counted],
 ) -> Result<(), KinematicsError> {
-    let is_sliding = |variable: usize| {
-        let link = tree.variables().get(variable).map(|v| v.link);
-        matches!(link.and_then(|link| tree.motion(link)), Some(LinkMotion::Sliding { .. }))
-    };
-    let ranges: Vec<(f64, f64)> = (tree.variables().iter().enumerate())
-        .map(|(index, variable)| range(&variable.soft_limit, if is_sliding(index) { SLIDE_M } else { PI }))
-        .collect();
     // Balls around the bodies settle most pairs.
     let balls: Vec<_> = shaped.iter().map(|&(_, body)| model.ball(body)).collect();
     let mut scratch = model.scratch();
@@ -183,7 +183,7 @@ fn count(
     // Touching, as the collision model means it.
     let too_near = clearance_m.max(1e-7);
     for _ in 0..samples {
-        for (value, (lower, upper)) in values.iter_mut().zip(&ranges) {
+        for (value, (lower, upper)) in values.iter_mut().zip(ranges) {
             *value = rng.random_range(*lower..=*upper);
         }
         tree.forward(&values, &Isometry3::identity(), &mut poses)?;
@@ -205,6 +205,18 @@ fn count(
         }
     }
     Ok(())
+}
+
+/// Where the variables are sampled.
+fn ranges(tree: &KinematicTree) -> Vec<(f64, f64)> {
+    let is_sliding = |variable: usize| {
+        let link = tree.variables().get(variable).map(|v| v.link);
+        matches!(link.and_then(|link| tree.motion(link)), Some(LinkMotion::Sliding { .. }))
+    };
+    let variables = tree.variables().iter().enumerate();
+    variables
+        .map(|(index, variable)| range(&variable.soft_limit, if is_sliding(index) { SLIDE_M } else { PI }))
+        .collect()
 }
 
 /// What is known of two links without a sample.
@@ -270,7 +282,7 @@ mod tests {
         let tree = KinematicTree::new(&robot).unwrap();
         let bodies = link_bodies(&robot, &tree, &no_meshes).unwrap();
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
-        let found = sample_pairs(&tree, &bodies, 0.0, samples, &mut rng).unwrap();
+        let found = sample_pairs(&tree, &bodies, &[], (0.0, samples), &mut rng).unwrap();
         (tree, found)
     }
 
@@ -299,14 +311,29 @@ mod tests {
     }
 
     #[test]
+    fn a_joint_that_is_held_does_not_move() {
+        let robot = RobotDescription::from_text(ROBOT).unwrap();
+        let tree = KinematicTree::new(&robot).unwrap();
+        let bodies = link_bodies(&robot, &tree, &no_meshes).unwrap();
+        // Stretched out, the lower arm never reaches the column.
+        let held = [(tree.variable_index("bend").unwrap(), 0.0)];
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
+        let found = sample_pairs(&tree, &bodies, &held, (0.0, 500), &mut rng).unwrap();
+        assert_eq!(found.checked().count(), 0);
+    }
+
+    #[test]
     fn the_same_seed_gives_the_same_pairs_and_no_sample_none() {
         assert_eq!(sampled(300, 5).1, sampled(300, 5).1);
         let robot = RobotDescription::from_text(ROBOT).unwrap();
         let tree = KinematicTree::new(&robot).unwrap();
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(0);
         let bodies = vec![None; tree.link_count()];
-        assert_eq!(sample_pairs(&tree, &bodies, 0.0, 0, &mut rng), Err(PairSamplingError::NoSample { samples: 0 }));
-        assert!(sample_pairs(&tree, &bodies[1..], 0.0, 1, &mut rng).is_err());
-        assert!(sample_pairs(&tree, &bodies, 0.0, 1, &mut rng).unwrap().pairs.is_empty());
+        assert_eq!(
+            sample_pairs(&tree, &bodies, &[], (0.0, 0), &mut rng),
+            Err(PairSamplingError::NoSample { samples: 0 })
+        );
+        assert!(sample_pairs(&tree, &bodies[1..], &[], (0.0, 1), &mut rng).is_err());
+        assert!(sample_pairs(&tree, &bodies, &[], (0.0, 1), &mut rng).unwrap().pairs.is_empty());
     }
 }

@@ -148,6 +148,7 @@ impl RobotDescription {
     /// Every [`UrdfError`] but those of files: each names the element, the value found and the bound it broke.
     pub fn from_text(text: &str) -> Result<Self, UrdfError> {
         guard::check(text)?;
+        let text = &*needed::with_namespaces(text);
         vocabulary::check(text)?;
         let needed = needed::only(text)?;
         let parsed =

@@ -160,7 +160,9 @@ impl Surroundings {
         let Keep { closer, most_m, .. } = keep;
         closer.clear();
         closer.extend(self.exceptions.iter().map(|e| Closer { clearance: e.clearance + unseen_m, ..*e }));
-        let mut may = |ones: BodySet, others: BodySet, clearance: f64| closer.push(Closer { ones, others, clearance });
+        let mut may = |ones: BodySet, others: BodySet, clearance: f64| {
+            closer.push(Closer { ones, others, clearance, only: None });
+        };
         if let Some((ones, others)) = terms.near {
             may(ones, others, contact_m);
         }
@@ -192,10 +194,12 @@ impl Surroundings {
         self.allow(state, &Contacts::default(), &mut worker.allowed);
         let least_m = self.strictness.safety.least_margin_m;
         let enough_m = least_m + UNSEEN_M + ROUNDING_M;
-        let pairs = self.model.indices().flat_map(|a| self.model.indices().map(move |b| (a, b))).filter(|(a, b)| {
-            let is_asked = !is_at_goal || !self.all_links.contains(*a) && !self.all_links.contains(*b);
-            a < b && is_asked && self.model.is_tested(*a, *b) && !worker.allowed.contains(*a, *b)
-        });
+        // Those that move were registered first.
+        let pairs =
+            self.model.moving().iter().flat_map(|a| self.model.indices().map(move |b| (a, b))).filter(|(a, b)| {
+                let is_asked = !is_at_goal || !self.all_links.contains(*a) && !self.all_links.contains(*b);
+                a < b && is_asked && self.model.is_tested(*a, *b) && !worker.allowed.contains(*a, *b)
+            });
         let near = pairs.map(|(a, b)| (a, b, self.model.distance_between(&worker.scratch, a, b, enough_m)));
         let near: Vec<_> = near.filter(|(.., distance_m)| (TOUCHING_M..enough_m).contains(distance_m)).collect();
         let name = |id| self.model.name(id).map_or_else(|| "unknown body".into(), Arc::clone);
@@ -215,9 +219,10 @@ impl Surroundings {
         // Even a pair that nearly touches must have something to give away between two states.
         self.unseen_m = self.unseen_m.min(distance_m / 4.0);
         let [ones, others] = [a, b].map(|id| BodySet::from_iter([id]));
-        match self.exceptions.iter_mut().find(|e| (e.ones, e.others) == (ones, others)) {
+        let only = Some((a.min(b), a.max(b)));
+        match self.exceptions.iter_mut().find(|e| e.only == only) {
             Some(known) => known.clearance = known.clearance.min(clearance),
-            None => self.exceptions.push(Closer { ones, others, clearance }),
+            None => self.exceptions.push(Closer { ones, others, clearance, only }),
         }
     }
 }

@@ -9,6 +9,7 @@
 //! | where can the base drive? | `floor` |
 //! | what would make a problem easier? | [`relax`] |
 //! | with which changes has it a plan? | [`explain`] |
+//! | why not in the way that a person has in mind? | [`why_not`] |
 //!
 //! All is bounded by counts and drawn from fixed seeds: the same problem has the same diagnosis. "None of 24" is what was
 //! counted; it is no proof.
@@ -42,8 +43,9 @@ mod floor;
 mod hands;
 mod pushes;
 pub mod relax;
+pub mod why_not;
 
-use cause::{Blocker, Cause, Place, Stage};
+use cause::{Blocker, Cause, Occupant, Place, Stage};
 use hands::{Case, Look, Survey, culprit, ranked};
 use relax::Relaxation;
 
@@ -116,6 +118,11 @@ impl Diagnosis {
             PlanningError::GoalBlocked { object, by, occupant, at } => {
                 Cause::GoalOccupied { object: object.clone(), by: by.clone(), occupant: *occupant, at: *at }
             }
+            PlanningError::GoalEnclosed { object, by, at } => {
+                let occupant = Occupant::Enclosure;
+                Cause::GoalOccupied { object: object.clone(), by: by.clone(), occupant, at: *at }
+            }
+            PlanningError::Doubtful { error, .. } => return Self::of_error(problem, error),
             PlanningError::GoalWithoutMeans { object, why } => {
                 Cause::NoMeans { object: object.clone(), lack: why.clone() }
             }
@@ -211,8 +218,8 @@ fn looked_for<M: TaskRobot>(
     let file = &request.problem;
     let (robot, arm) = M::build(&file.robot)?;
     let allowed: Vec<_> = registry.allowed(file).collect();
-    let Built { world, start, goal, scene, .. } = world::build_with(registry, file, robot, arm)?;
-    let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal, scene: &scene };
+    let Built { world, start, goal, .. } = world::build_with(registry, file, robot, arm)?;
+    let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal };
     Ok(Inquest { outlook, look: Look { m: &world, start: &start, goal: &goal, is_quick } }.causes())
 }
 

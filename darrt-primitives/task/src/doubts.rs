@@ -8,8 +8,7 @@ use darrt_core::observe::accounts::Bucket;
 use darrt_core::primitive::{Infeasible, PrimitiveId};
 use darrt_core::random::{Purpose, stream};
 use darrt_core::state::ObjectId;
-use darrt_geom::Body;
-use darrt_geom::scene::Scene;
+use darrt_geom::Shape;
 use darrt_primitives::action::pick::{lies_flat, pick};
 use darrt_primitives::action::place::place;
 use darrt_primitives::action::push::push;
@@ -23,8 +22,11 @@ use nalgebra::{Isometry3, Translation3};
 use rand::{Rng, RngExt as _};
 
 use crate::goal_means::Means;
+use crate::grasp_families::why_none_holds;
 use crate::planning_error::PlanningError;
+use crate::problem_file::geometry::Geometry;
 use crate::problem_file::{Object, ProblemFile, ShapeSpec};
+use crate::text::counted;
 
 /// How often an action is tried before it is doubted; a push, which has one direction that may be right, more often.
 const TRIES: u64 = 32;
@@ -41,6 +43,61 @@ const WIDEST_M: f64 = 20.0;
 const NEAR_M: f64 = 0.1;
 const FAR_M: f64 = 1.5;
 
+/// What makes a plan unlikely, or may not be meant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Doubt {
+    /// In words.
+    pub words: String,
+    /// What a plan shows all the same, in words; `None` for what stays in doubt when there is a plan.
+    pub refuted: Option<String>,
+}
+
+impl Doubt {
+    /// What a plan does not refute.
+    fn of_input(words: String) -> Self {
+        Self { words, refuted: None }
+    }
+}
+
+impl std::fmt::Display for Doubt {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.words)
+    }
+}
+
+/// What the problem file alone leaves in doubt: meshes that are probably not in metres or not closed.
+pub(crate) fn of_meshes(problem: &ProblemFile, geometry: &Geometry) -> Vec<Doubt> {
+    let bodies = geometry.scene.bodies().iter().map(|fixed| &fixed.body);
+    let obstacles = problem.obstacles.iter().map(|obstacle| &obstacle.shape).zip(bodies);
+    let bodies = geometry.objects.iter().map(|object| &object.body);
+    let objects = problem.objects.iter().map(|object| &object.shape).zip(bodies);
+    let mut doubts = Vec::new();
+    for (shape, body) in obstacles.chain(objects) {
+        let ShapeSpec::Mesh { scale, .. } = shape else { continue };
+        let name = &body.name;
+        let (low, high) = body.local_aabb();
+        let width_m = (high - low).max();
+        if width_m > WIDEST_M {
+            let smaller = scale / 1000.0;
+            let words = format!(
+                "`{name}` is {width_m:.0} m wide: is its mesh in millimetres? Then it needs `scale = {smaller}`"
+            );
+            doubts.push(Doubt::of_input(words));
+        }
+        let open: usize =
+            body.parts.iter().map(|part| if let Shape::Mesh(mesh) = &part.shape { mesh.open_edges() } else { 0 }).sum();
+        if open > 0 {
+            let edges = counted(open as u64, "edge");
+            let words = format!(
+                "the mesh of `{name}` is not closed ({edges} with nothing on one side): it counts as a shell, and what is inside \
+                 it does not touch it"
+            );
+            doubts.push(Doubt::of_input(words));
+        }
+    }
+    doubts
+}
+
 /// A problem whose actions are tried.
 pub(crate) struct Outlook<'a, M: Manipulator> {
     pub(crate) problem: &'a ProblemFile,
@@ -48,7 +105,6 @@ pub(crate) struct Outlook<'a, M: Manipulator> {
     pub(crate) m: &'a Tabletop<M>,
     pub(crate) start: &'a TabletopState<M>,
     pub(crate) goal: &'a TabletopGoal<M::Joints>,
-    pub(crate) scene: &'a Scene,
 }
 
 impl<'a, M: Manipulator> Outlook<'a, M> {
@@ -80,36 +136,26 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         Ok(())
     }
 
-    /// What makes a plan unlikely, in words; empty for most problems. `immovable` is [`Outlook::immovable`].
-    pub(crate) fn doubts(&self, immovable: &[ObjectId]) -> Vec<String> {
+    /// What makes a plan unlikely; empty for most problems. `immovable` is [`Outlook::immovable`].
+    pub(crate) fn doubts(&self, immovable: &[ObjectId]) -> Vec<Doubt> {
         let wanted = self.objects().filter(|(id, _)| self.must_move(*id));
         let actions = wanted.flat_map(|(id, object)| {
             let alone = self.alone(id, immovable);
             let means = self.means(object);
             [self.of_leaving(id, &means, &alone), self.of_arriving(id, &means, &alone)]
         });
-        self.of_size().into_iter().chain(actions.flatten()).collect()
+        self.of_grasps().chain(actions.flatten()).collect()
     }
 
-    /// Meshes so large that they are probably not in metres.
-    fn of_size(&self) -> Vec<String> {
-        let bodies = self.scene.bodies().iter().map(|fixed| &fixed.body);
-        let obstacles = self.problem.obstacles.iter().map(|obstacle| &obstacle.shape).zip(bodies);
-        let bodies = self.m.movables().iter().map(|movable| &movable.body);
-        let objects = self.problem.objects.iter().map(|object| &object.shape).zip(bodies);
-        let wide = |(shape, body): (&ShapeSpec, &Body)| {
-            let ShapeSpec::Mesh { scale, .. } = shape else { return None };
-            let (low, high) = body.local_aabb();
-            let width_m = (high - low).max();
-            let smaller = scale / 1000.0;
-            (width_m > WIDEST_M).then(|| {
-                let name = &body.name;
-                format!(
-                    "`{name}` is {width_m:.0} m wide: is its mesh in millimetres? Then it needs `scale = {smaller}`"
-                )
-            })
-        };
-        obstacles.chain(objects).filter_map(wide).collect()
+    /// Objects that must move and have grasps none of which holds them; else that they are only pushed would not be said.
+    fn of_grasps(&self) -> impl Iterator<Item = Doubt> + use<'_, 'a, M> {
+        let robot = self.m.manipulator();
+        self.objects().filter(|(id, object)| self.must_move(*id) && !object.grasps.is_empty()).filter_map(
+            |(_, object)| {
+                let why = why_none_holds(object, robot.hand(), robot.payload_kg())?;
+                Some(Doubt::of_input(format!("no grasp holds `{}`, so that it can only be pushed: {why}", object.name)))
+            },
+        )
     }
 
     pub(crate) fn objects(&self) -> impl Iterator<Item = (ObjectId, &'a Object)> + use<'a, M> {
@@ -143,7 +189,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
     }
 
     /// Can the object leave where it stands?
-    fn of_leaving(&self, id: ObjectId, means: &Means<'_>, state: &TabletopState<M>) -> Option<String> {
+    fn of_leaving(&self, id: ObjectId, means: &Means<'_>, state: &TabletopState<M>) -> Option<Doubt> {
         let is_known =
             self.is_ours(PICK, |contract| contract.hand == HandUse::Takes) && self.is_ours(PUSH, Contract::slides);
         if !is_known {
@@ -160,7 +206,10 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
             Ok(()) => tried(PUSHES, "push", |rng| push(self.m, state, id, &around(rng, &pose), rng).map(drop))?,
             Err(why) => why.clone(),
         };
-        Some(format!("`{name}` can hardly leave where it stands: {no_pick}; {no_push}"))
+        Some(Doubt {
+            words: format!("`{name}` can hardly leave where it stands: {no_pick}; {no_push}"),
+            refuted: Some(format!("`{name}` can leave where it stands, which was doubted")),
+        })
     }
 
     /// Has the object a goal on what it stands on, to which a push may lead?
@@ -174,7 +223,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
     }
 
     /// Can the object be set down at its goal?
-    fn of_arriving(&self, id: ObjectId, means: &Means<'_>, state: &TabletopState<M>) -> Option<String> {
+    fn of_arriving(&self, id: ObjectId, means: &Means<'_>, state: &TabletopState<M>) -> Option<Doubt> {
         let is_known = self.is_ours(PLACE, |contract| contract.hand == HandUse::LetsGo);
         let groups = self.goal.groups().iter();
         let needs_hand = groups.flatten().filter(|goal| goal.object == id).all(|goal| goal.grip == Grip::Released);
@@ -191,8 +240,10 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
             place(self.m, &held, &target, rng).map(drop)
         })?;
         let name = &means.object.name;
+        let refuted = format!("`{name}` can come to its goal, which was doubted");
         if !self.may_be_pushed_there(means) {
-            return Some(format!("`{name}` can hardly be set down at its goal: {no_place}"));
+            let words = format!("`{name}` can hardly be set down at its goal: {no_place}");
+            return Some(Doubt { words, refuted: Some(refuted) });
         }
         let no_push = tried(PUSHES, "push it there", |rng| {
             let target = target(rng)?;
@@ -202,7 +253,8 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
             let off_m = (there.translation.vector - target.translation.vector).norm();
             if off_m <= NEARLY_M { Ok(()) } else { Err(Infeasible::NoProgress) }
         })?;
-        Some(format!("`{name}` can hardly come to its goal: {no_place}; {no_push}"))
+        let words = format!("`{name}` can hardly come to its goal: {no_place}; {no_push}");
+        Some(Doubt { words, refuted: Some(refuted) })
     }
 
     /// The object in the hand, by one of its grasps.
@@ -260,7 +312,7 @@ mod tests {
     use crate::problem_file::PrimitiveName;
     use crate::testing::{builtin, builtin_names, registry};
 
-    fn prepared(edit: impl Fn(&mut ProblemFile)) -> Result<Vec<String>, PlanningError> {
+    fn prepared(edit: impl Fn(&mut ProblemFile)) -> Result<Vec<Doubt>, PlanningError> {
         let mut problem = builtin("plate1").unwrap();
         edit(&mut problem);
         prepare(&registry(), &problem).map(|prepared| prepared.doubts)
@@ -282,9 +334,24 @@ mod tests {
     }
 
     #[test]
+    fn grasps_that_never_hold_are_told_though_a_push_does_it() {
+        let doubts = prepared(|p| {
+            p.objects[0].friction.fingers = 0.0;
+            p.goal.objects[0].on = Some("central table".to_owned());
+            p.goal.objects[0].at = Some([-0.2, -0.2]);
+        });
+        let doubts = doubts.unwrap();
+        let told = doubts.iter().find(|doubt| doubt.refuted.is_none()).unwrap();
+        assert!(told.words.contains("no grasp holds `plate`") && told.words.contains("no friction"), "{told}");
+    }
+
+    #[test]
     fn a_goal_where_no_hand_comes_is_doubted() {
         // In the middle of a table a hand at the rim has the table in its way.
         let doubts = prepared(|p| p.goal.objects[0].at = Some([-2.4, -1.45])).unwrap();
-        assert!(doubts.iter().any(|doubt| doubt.contains("`plate` can hardly be set down at its goal")), "{doubts:?}");
+        assert!(
+            doubts.iter().any(|doubt| doubt.words.contains("`plate` can hardly be set down at its goal")),
+            "{doubts:?}"
+        );
     }
 }

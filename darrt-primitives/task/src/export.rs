@@ -177,7 +177,8 @@ impl Exporter {
         out
     }
 
-    fn waypoint<M: TaskRobot>(&self, m: &Tabletop<M>, state: &TabletopState<M>, gap_m: f64) -> Waypoint {
+    /// A state as it stands in plan files, the hand open by `gap_m`.
+    pub(crate) fn waypoint<M: TaskRobot>(&self, m: &Tabletop<M>, state: &TabletopState<M>, gap_m: f64) -> Waypoint {
         let joints = self.joints.complete(&m.manipulator().joint_values(&state.robot, gap_m));
         let poses = m.movables().iter().zip(&state.objects);
         let objects: BTreeMap<_, _> = poses.map(|(o, pose)| (Arc::clone(&o.body.name), Pose::from(*pose))).collect();

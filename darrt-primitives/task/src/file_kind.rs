@@ -16,6 +16,8 @@ pub enum FileKind {
     JsonProblem,
     /// A plan file (JSON).
     Plan,
+    /// A recorded search (JSON).
+    Recording,
 }
 
 impl FileKind {
@@ -28,6 +30,9 @@ impl FileKind {
             // A plan embeds its problem, so only the first word counts.
             let (_, value) = text.split_once("\"format\"")?;
             let value = value.trim_start_matches([' ', '\t', '\r', '\n', ':']);
+            if value.starts_with("\"darrt-recording\"") {
+                return Some(Self::Recording);
+            }
             return value.starts_with("\"darrt-problem\"").then_some(Self::JsonProblem);
         }
         let says = |line: &str| line.trim_start().starts_with("format") && line.contains("darrt-problem");
@@ -47,6 +52,7 @@ impl FileKind {
             Self::Plan => Some(format!(
                 "is a plan, not a problem; judge it with `darrt check {file}`, draw it with `darrt show {file}`"
             )),
+            Self::Recording => Some(format!("is a recorded search, not a problem; draw it with `darrt show {file}`")),
         }
     }
 
@@ -55,6 +61,7 @@ impl FileKind {
         match self {
             Self::Plan => None,
             Self::JsonProblem => Some("is a problem as JSON, not a plan".to_owned()),
+            Self::Recording => Some(format!("is a recorded search, not a plan; draw it with `darrt show {file}`")),
             Self::Problem => Some(format!("is a problem, not a plan; plan it with `darrt plan {file}`")),
         }
     }
@@ -88,6 +95,7 @@ mod tests {
         assert_eq!(FileKind::of_text(" {\"format\": \"darrt-problem\"}"), Some(FileKind::JsonProblem));
         assert_eq!(FileKind::of_text("# mine\n format = 'darrt-problem'\nx = = 2"), Some(FileKind::Problem));
         assert_eq!(FileKind::of_text(&plan.replace("darrt-plan", "darrt-plot")), None);
+        assert_eq!(FileKind::of_text(&plan.replace("darrt-plan", "darrt-recording")), Some(FileKind::Recording));
         for text in ["", "{}", "[1]", "format = 1", "name = \"darrt-problem\""] {
             assert_eq!(FileKind::of_text(text), None, "{text}");
         }

@@ -14,6 +14,8 @@ mod load;
 mod opening;
 mod pairs;
 mod reach;
+mod sampled;
+mod semantic;
 pub mod shipped;
 mod task;
 mod travel;
@@ -23,6 +25,7 @@ use std::collections::BTreeMap;
 
 use arrayvec::ArrayVec;
 use darrt_primitives::arm_space::difference;
+use darrt_primitives::heading_drive;
 use darrt_primitives::joints::{Joints, MAX_JOINTS};
 use darrt_primitives::kinematics::JointLimit;
 use darrt_primitives::manipulator::{Configuration, Hand, LinkGroup, Manipulator, RobotLink, world_from_base};
@@ -210,9 +213,14 @@ impl Manipulator for FileRobot {
         &self.weights_m
     }
 
+    fn drives_along_heading(&self) -> bool {
+        self.base_kind == BaseKind::Differential
+    }
+
     /// The slowest joint decides for the arm; base and arm move one after the other, and the base drives or turns.
     fn duration_s(&self, a: &Configuration<Joints>, b: &Configuration<Joints>, is_loaded: bool) -> f64 {
         let (joints, [shift, turn]) = self.ways(a, b);
+        let turn = if self.drives_along_heading() { heading_drive::turned_rad(&a.base, &b.base) } else { turn };
         let arm_s = joints.iter().zip(&self.speeds.joints).map(|(way, speed)| way.abs() / speed).fold(0.0, f64::max);
         let [drive, spin] = self.speeds.base[usize::from(is_loaded)];
         arm_s + shift / drive + turn / spin

@@ -35,6 +35,7 @@ pub mod planning_error;
 pub mod problem_file;
 pub mod profile;
 pub mod program;
+pub mod recording;
 pub mod registry;
 pub mod replan;
 pub mod robot;

@@ -15,10 +15,11 @@ use darrt_core::observe::{Event, Observer};
 use darrt_core::partial::PartialState;
 use darrt_core::plan::Plan;
 use darrt_core::problem::{Parts, Problem};
+use darrt_core::record::Recorder;
 use darrt_core::sample::{GoalBiased, Guided, Placed};
 use darrt_core::search::{Algorithm, Strategy};
 use darrt_core::shorten::ShortenOptions;
-use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_with};
+use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_recorded};
 use darrt_core::space::{ComponentSpace as _, Place};
 use darrt_core::state::ObjectId;
 use darrt_core::verify::{Refusal, Solution, Verified, Verifier};
@@ -30,12 +31,14 @@ use darrt_primitives::validity::SceneValidity;
 use nalgebra::Isometry3;
 
 use crate::clock::{NoClock, give_clock};
-use crate::doubts::Outlook;
+pub use crate::doubts::Doubt;
+use crate::doubts::{Outlook, of_meshes};
 use crate::export::{Exporter, Written};
-use crate::plan_file::{PlanFile, PlannerFacts, Pose, SearchName};
+use crate::plan_file::{PlanFile, PlannerFacts, Pose, SearchName, Waypoint};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{CostName, DistanceName, ProblemFile, SamplerName};
 use crate::profile::{Profile, Timed, Times, Watched};
+use crate::recording::{Recording, Tape};
 use crate::registry::Registry;
 use crate::robot::{RobotFacts, TaskRobot};
 use crate::verify::{Proof, VerifyOptions, verify_unless};
@@ -100,6 +103,8 @@ pub struct PlanRequest {
     pub changes: Vec<StrategyChange>,
     /// Places of objects by name that are proposed to the search, as an earlier plan had them.
     pub hints: Vec<BTreeMap<String, Pose>>,
+    /// Keep how the trees grew.
+    pub record: bool,
 }
 
 impl PlanRequest {
@@ -121,6 +126,7 @@ impl PlanRequest {
             cost: CostName::default(),
             changes: Vec::new(),
             hints: Vec::new(),
+            record: false,
         }
     }
 }
@@ -144,8 +150,8 @@ pub struct PlanResult {
     pub plans: u64,
     /// What the problem itself puts nearer to each other than the least margin.
     pub near: Vec<NearPair>,
-    /// What made a plan unlikely before the search, in words.
-    pub doubts: Vec<String>,
+    /// What made a plan unlikely before the search.
+    pub doubts: Vec<Doubt>,
     /// Why it stopped.
     pub stop: Stop,
     /// Counts per primitive.
@@ -167,6 +173,10 @@ pub struct PlanResult {
     /// Without a plan, the beginning of one, verified: as far towards the goal as the search came with the objects. `None` if
     /// it moved none, or was cancelled.
     pub partial: Option<(PlanFile, Proof)>,
+    /// The state nearest to the goal, by the planner's distance; no way to it need be free.
+    pub nearest: Option<Waypoint>,
+    /// How the trees grew, if that was asked for.
+    pub recording: Option<Recording>,
 }
 
 /// The judge: a plan is exported and the plan file is verified, so that what is accepted is what the user gets. What a file
@@ -223,8 +233,8 @@ pub struct Prepared<M: TaskRobot> {
     pub problem: Problem<Tabletop<M>>,
     /// What the problem itself puts nearer to each other than the least margin.
     pub near: Vec<NearPair>,
-    /// What makes a plan unlikely, in words; empty for most problems.
-    pub doubts: Vec<String>,
+    /// What makes a plan unlikely; empty for most problems.
+    pub doubts: Vec<Doubt>,
     exporter: Arc<Exporter>,
     facts: Arc<RobotFacts>,
     /// G, of which a partial plan meets some parts.
@@ -265,13 +275,24 @@ fn prepare_watched<M: TaskRobot>(
     let allowed: Vec<_> = registry.allowed(file).collect();
     crate::goal_means::check_means(file, allowed.iter().copied(), &robot)?;
     let robot = if request.bases_from_reachability { robot.with_bases_from_reachability() } else { robot };
+    let mut doubts = file.geometry().map(|geometry| of_meshes(file, &geometry)).unwrap_or_default();
+    // What is wrong with the start may be so because of what is doubted.
+    let so_far: Vec<_> = doubts.iter().map(|doubt| doubt.words.clone()).collect();
+    let with_doubts = |error: PlanningError| match error {
+        error if so_far.is_empty() => error,
+        error => PlanningError::Doubtful { error: Box::new(error), doubts: so_far.join("; ") },
+    };
     let Built { world, start, goal, scene, near } = world::build_with(registry, file, robot, arm)?;
     let validity = SceneValidity::new(&world);
-    let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal, scene: &scene };
+    let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal };
     let immovable = outlook.immovable();
-    crate::goal_check::check_goal(&world, &goal, &scene, &start, &immovable)?;
+    let blocked = crate::goal_check::check_goal(&world, &goal, &scene, &start, &immovable).map_err(&with_doubts)?;
     outlook.check_rims()?;
-    let doubts = outlook.doubts(&immovable);
+    doubts.extend(blocked.map(|words| {
+        let refuted = Some("the goal is not blocked, which was doubted".to_owned());
+        Doubt { words, refuted }
+    }));
+    doubts.extend(outlook.doubts(&immovable));
     let facts = Arc::new(M::facts(&file.robot)?);
     let exporter = Arc::new(Exporter::new(file, &facts)?);
     let (whole_goal, robot_facts) = (goal.clone(), Arc::clone(&facts));
@@ -290,7 +311,8 @@ fn prepare_watched<M: TaskRobot>(
         primitives: primitives.map(|part| Box::new(Timed { part, watch: Arc::clone(watch) }) as _).collect(),
         validity: Box::new(Timed { part: validity, watch: Arc::clone(watch) }),
         verifier: Box::new(verifier),
-    })?;
+    })
+    .map_err(|error| with_doubts(error.into()))?;
     Ok(Prepared { problem, near, doubts, exporter, facts: robot_facts, goal: whole_goal })
 }
 
@@ -351,8 +373,8 @@ pub(crate) fn plan_without_clock<M: TaskRobot>(
         return Err(PlanningError::NoLimit);
     }
     let begun = watch.elapsed();
-    for reason in &prepared.doubts {
-        if observer.on_event(&Event::Doubt { reason }).is_break() {
+    for doubt in &prepared.doubts {
+        if observer.on_event(&Event::Doubt { reason: &doubt.words }).is_break() {
             cancel.cancel();
         }
     }
@@ -361,11 +383,18 @@ pub(crate) fn plan_without_clock<M: TaskRobot>(
     let members: Vec<_> =
         request.algorithms.iter().map(|algorithm| Member { algorithm: *algorithm, strategy }).collect();
     let until = request.improve.map_or(Until::Solved, Until::BudgetEnds);
-    let outcome = solve_with(&prepared.problem, &members, until, &options, observer);
+    let mut tape = request.record.then(Tape::default);
+    let recorder = tape.as_mut().map(|tape| tape as &mut dyn Recorder<Tabletop<M>>);
+    let outcome = solve_recorded(&prepared.problem, &members, until, &options, observer, recorder);
     let is_solved = outcome.solution.is_some();
     let plans = if request.improve.is_some() { observer.plans } else { u64::from(is_solved) };
     let times = watch.times(begun, outcome.elapsed, is_solved);
-    let result = PlanResult { plans, times, ..result(&prepared, request, cost, outcome)? };
+    let recording = tape.map(|tape| {
+        let names = prepared.problem.primitives().iter().map(|part| part.name().to_owned()).collect();
+        let solved = outcome.solution.as_ref().map(|_| outcome.restarts).filter(|_| request.improve.is_none());
+        tape.wound_up(&request.problem, request.seed, names, (outcome.restarts, solved))
+    });
+    let result = PlanResult { plans, times, recording, ..result(&prepared, request, cost, outcome)? };
     Ok((result, prepared.facts))
 }
 
@@ -408,6 +437,7 @@ fn result<M: TaskRobot>(
     let found = found.transpose()?;
     let whole = || (request.seed, facts.clone());
     let partial = outcome.part.as_ref().and_then(|plan| partial::verified(prepared, plan, whole()));
+    let nearest = outcome.nearest.as_ref().map(|state| prepared.exporter.waypoint(m, state, state.mode.gap_m()));
     let judged = outcome.solution.map(Solution::into_parts).and_then(|(plan, verified)| {
         let judged = verified.evidence?.downcast().ok()?;
         Some((plan, Arc::<Judged>::unwrap_or_clone(judged)))
@@ -436,6 +466,8 @@ fn result<M: TaskRobot>(
         times: Times::default(),
         last_refusal: outcome.last_refusal,
         partial,
+        nearest,
+        recording: None,
     })
 }
 

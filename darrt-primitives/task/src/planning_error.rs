@@ -62,6 +62,27 @@ pub enum PlanningError {
         /// Where the object would be, metres.
         at: [f64; 3],
     },
+    /// A closed mesh lies between where the object starts and where it shall be.
+    #[error(
+        "the goal of `{object}` is enclosed by `{by}`: the mesh is closed, and of start and goal one is inside and the other is not"
+    )]
+    GoalEnclosed {
+        /// The object.
+        object: String,
+        /// What is between.
+        by: String,
+        /// Where the object would be, metres.
+        at: [f64; 3],
+    },
+    /// Something is wrong, and something else may be why.
+    #[error("{error} ({doubts})")]
+    Doubtful {
+        /// What is wrong.
+        #[source]
+        error: Box<PlanningError>,
+        /// What may be why, in words.
+        doubts: String,
+    },
     /// The primitives and grasps of the problem do not suffice for any of the goals of an object.
     #[error("the goal of `{object}` cannot be reached: {why}")]
     GoalWithoutMeans {
@@ -89,4 +110,15 @@ pub enum PlanningError {
         /// What it needs.
         needs: String,
     },
+}
+
+impl PlanningError {
+    /// Is it proven that the problem, as it is written, has no plan? Else something of it cannot be used, or is not known.
+    pub fn is_impossible(&self) -> bool {
+        match self {
+            Self::GoalBlocked { .. } | Self::GoalEnclosed { .. } | Self::GoalWithoutMeans { .. } => true,
+            Self::Doubtful { error, .. } => error.is_impossible(),
+            _ => false,
+        }
+    }
 }

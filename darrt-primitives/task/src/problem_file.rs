@@ -20,6 +20,7 @@ pub mod name;
 pub mod nesting;
 pub mod object;
 pub(crate) mod paths;
+pub(crate) mod ranges;
 pub mod read;
 pub mod robot;
 pub mod safety;

@@ -7,6 +7,7 @@ use darrt_core::observe::Observer;
 use darrt_primitives::contract::Contract;
 
 use crate::diagnosis::explain::{ExplainRequest, Explanation, explain};
+use crate::diagnosis::why_not::{WhyNot, WhyNotError, WhyNotRequest, why_not};
 use crate::diagnosis::{Diagnosis, diagnose};
 use crate::file_robot::{FileRobot, shipped};
 use crate::planning::{PlanRequest, PlanResult, plan};
@@ -86,6 +87,12 @@ pub trait Program: Send + Sync {
     /// # Errors
     /// As [`explain`].
     fn explain(&self, request: &ExplainRequest, cancel: &Cancel) -> Result<Explanation, PlanningError>;
+
+    /// What is wrong with an idea; see [`why_not`].
+    ///
+    /// # Errors
+    /// As [`why_not`].
+    fn why_not(&self, request: &WhyNotRequest) -> Result<WhyNot, WhyNotError>;
 }
 
 /// A program's own robot, and those that come as files: whichever a problem names.
@@ -165,6 +172,10 @@ impl<M: TaskRobot> Program for Robots<M> {
     fn explain(&self, request: &ExplainRequest, cancel: &Cancel) -> Result<Explanation, PlanningError> {
         self.of(&request.plan.problem).explain(request, cancel)
     }
+
+    fn why_not(&self, request: &WhyNotRequest) -> Result<WhyNot, WhyNotError> {
+        self.of(&request.problem).why_not(request)
+    }
 }
 
 impl<M: TaskRobot> Program for Registry<M> {
@@ -213,5 +224,9 @@ impl<M: TaskRobot> Program for Registry<M> {
 
     fn explain(&self, request: &ExplainRequest, cancel: &Cancel) -> Result<Explanation, PlanningError> {
         explain(self, request, cancel)
+    }
+
+    fn why_not(&self, request: &WhyNotRequest) -> Result<WhyNot, WhyNotError> {
+        why_not(self, request)
     }
 }

@@ -365,5 +365,7 @@ fn as_it_is<M: TaskRobot>(registry: &Registry<M>, file: &PlanFile, proof: Proof)
         times: crate::profile::Times::default(),
         last_refusal: None,
         partial: None,
+        nearest: None,
+        recording: None,
     }
 }

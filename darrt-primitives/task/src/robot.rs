@@ -3,11 +3,10 @@
 //! A planner moves a [`Manipulator`]; a judge must not trust the planner's code and gets [`RobotFacts`] instead: the
 //! description, and the names that say what is arm, hand and finger in it.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use darrt_primitives::contract::Contract;
-use darrt_primitives::kinematics::{RobotDescription, UrdfError};
+use darrt_primitives::kinematics::{MeshPlaces, RobotDescription, UrdfError};
 use darrt_primitives::manipulator::{Configuration, Manipulator};
 
 use crate::clock::MotionLimits;
@@ -89,7 +88,7 @@ pub struct RobotFacts {
     /// Links, joints and shapes.
     pub description: Arc<RobotDescription>,
     /// Where its meshes are looked for.
-    pub mesh_folders: Vec<PathBuf>,
+    pub meshes: MeshPlaces,
     /// The joints of the arm that manipulates, from the base outwards. The last one moves the hand.
     pub arm_joints: Vec<String>,
     /// The joint that opens the hand as it grows.
@@ -110,6 +109,8 @@ pub struct RobotFacts {
     pub self_pairs: Vec<[String; 2]>,
     /// Its base is bolted down: it never moves.
     pub is_bolted: bool,
+    /// Does the base move along its heading only, and turn on the spot?
+    pub drives_along_heading: bool,
     /// Length of a pad from the tip back, metres.
     pub pad_length_m: f64,
     /// Force of each finger on what it holds, newton.

@@ -7,6 +7,7 @@
 //! Units are SI, angles are radians unless the key ends in `_deg`.
 
 pub mod amend;
+pub mod built_hand;
 pub mod error;
 mod pads;
 pub mod read;
@@ -18,6 +19,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use amend::{Amended, amend};
+pub use built_hand::BuiltHand;
 pub use error::RobotFileError;
 pub use read::Source;
 
@@ -47,6 +49,14 @@ pub struct RobotFile {
     pub title: String,
     /// The robot description (URDF), relative to the folder of this file.
     pub urdf: PathBuf,
+    /// The semantic description (SRDF) of the same robot: the pairs of links that it disables are not checked. Relative to the
+    /// folder of this file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub srdf: Option<PathBuf>,
+    /// Folders of packages, for meshes called `package://NAME/...`; relative to the folder of this file. A package that is not here
+    /// is looked for in `ROS_PACKAGE_PATH`, `AMENT_PREFIX_PATH`, and from the description upwards.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub packages: BTreeMap<String, PathBuf>,
     /// Links of the description that have a visual and may lack a collision shape: the robot is planned as if they were air.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shapeless: Vec<String>,
@@ -56,6 +66,9 @@ pub struct RobotFile {
     pub arm: Arm,
     /// The tool frame: x forward out of the hand, y the direction in which the fingers open, in the middle between the pads.
     pub tool: Tool,
+    /// A hand of boxes, where the description has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hand: Option<BuiltHand>,
     /// The hand with two fingers.
     pub gripper: Gripper,
     /// Postures of the arm by name: one value for each joint (rad or m), from the base outwards.
@@ -81,8 +94,15 @@ pub enum BaseKind {
     Planar,
     /// It slides along a line in its frame: the line becomes the first joint of the arm.
     Rail,
-    /// It drives along its heading only, and turns on the spot.
+    /// It drives along its heading only, ahead and back, and turns on the spot.
     Differential,
+}
+
+impl BaseKind {
+    /// Does it drive on the floor?
+    pub fn drives(self) -> bool {
+        matches!(self, Self::Planar | Self::Differential)
+    }
 }
 
 /// `[base]`.

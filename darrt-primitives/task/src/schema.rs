@@ -10,7 +10,9 @@ use serde_json::Value;
 /// [`Diagnosis`](crate::diagnosis::Diagnosis) or
 /// [`PlanFile`](crate::plan_file::PlanFile).
 pub fn schema<T: JsonSchema>() -> Value {
-    schemars::schema_for!(T).to_value()
+    let mut schema = schemars::schema_for!(T).to_value();
+    crate::problem_file::ranges::write(&mut schema);
+    schema
 }
 
 /// The text of a schema as it is published in the folder `schemas`, with a final newline.

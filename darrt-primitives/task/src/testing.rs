@@ -1,8 +1,6 @@
 //! A robot and problems for the unit tests of this crate: the PR2 and what it has built in, by way of texts, because the crate
 //! that is tested is not the one that the PR2 knows.
 
-use std::path::PathBuf;
-
 use darrt_core::budget::Cancel;
 use darrt_core::observe::Silent;
 pub(crate) use darrt_pr2::robot::Pr2;
@@ -85,10 +83,9 @@ impl TaskRobot for Pr2 {
 
     fn facts(settings: &Robot) -> Result<RobotFacts, RobotError> {
         let facts = <Self as Outside>::facts(&outside(settings)).map_err(RobotError::model)?;
-        let folders: Vec<PathBuf> = facts.mesh_folders;
         Ok(RobotFacts {
             description: facts.description,
-            mesh_folders: folders,
+            meshes: facts.meshes,
             arm_joints: facts.arm_joints,
             finger_joint: facts.finger_joint,
             tool_link: facts.tool_link,
@@ -99,6 +96,7 @@ impl TaskRobot for Pr2 {
             at_rest: facts.at_rest,
             self_pairs: facts.self_pairs,
             is_bolted: facts.is_bolted,
+            drives_along_heading: facts.drives_along_heading,
             pad_length_m: facts.pad_length_m,
             grip_force_n: facts.grip_force_n,
             payload_kg: facts.payload_kg,

@@ -45,6 +45,17 @@ pub fn read(path: &Path, max_bytes: u64) -> Result<String, TextFileError> {
     Ok(bounded_file::read_text(path, max_bytes)?)
 }
 
+/// What a person writes for the standard input in the place of a file.
+pub const STDIN: &str = "-";
+
+/// The text on the standard input, at most `max_bytes` long.
+///
+/// # Errors
+/// [`TextFileError::File`] when it is longer, cannot be read, or is not UTF-8.
+pub fn read_stdin(max_bytes: u64) -> Result<String, TextFileError> {
+    Ok(bounded_file::read_stream(io::stdin().lock(), "standard input", max_bytes)?)
+}
+
 /// Refuses a text that is too long or, by the scanner of its format, nested too deeply; the scanner gives the byte offset
 /// of the first bracket beyond the limit that it is given. `file` is how errors call the text.
 ///
@@ -107,7 +118,8 @@ pub fn beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
         // As for any new file: the process's mask decides.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder)
+    // The message would name the new file, of which nobody has heard.
+    builder.tempfile_in(folder).map_err(|error| error.kind().into())
 }
 
 #[cfg(test)]

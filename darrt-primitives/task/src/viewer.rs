@@ -6,7 +6,9 @@
 //! | what do robot, room and objects look like? | `scene`, `meshes` |
 //! | what moves, and when? | `timeline` |
 //! | how near does what come? | `clearance` |
-//! | how is it drawn? | `viewer.html`, which is also fit for data of others |
+//! | why is there no plan, and what was in the way? | [`why`] |
+//! | how did the search go? | [`search`] |
+//! | how is it drawn? | the files of `page`, which are also fit for data of others |
 //! | and as a file for other programs? | [`glb`], with the triangles of `solids` |
 
 mod clearance;
@@ -14,8 +16,10 @@ pub mod data;
 pub mod glb;
 mod meshes;
 mod scene;
+pub mod search;
 mod solids;
 mod timeline;
+pub mod why;
 
 use darrt_primitives::kinematics::UrdfError;
 
@@ -28,8 +32,24 @@ use data::ViewerData;
 pub use scene::RobotModel;
 use timeline::Moment;
 
-/// The page without data and figure.
-pub const PAGE: &str = include_str!("viewer/viewer.html");
+/// The page without style, script, data and figure.
+const PAGE: &str = include_str!("viewer/page/page.html");
+/// How it looks.
+const STYLE: &str = include_str!("viewer/page/style.css");
+/// What it does: one script, in the order in which a reader wants it.
+const SCRIPT: [&str; 11] = [
+    include_str!("viewer/page/poses.js"),
+    include_str!("viewer/page/solids.js"),
+    include_str!("viewer/page/renderer.js"),
+    include_str!("viewer/page/scene.js"),
+    include_str!("viewer/page/marked.js"),
+    include_str!("viewer/page/search.js"),
+    include_str!("viewer/page/time.js"),
+    include_str!("viewer/page/panel.js"),
+    include_str!("viewer/page/why.js"),
+    include_str!("viewer/page/hands.js"),
+    include_str!("viewer/page/begin.js"),
+];
 
 /// Why there is nothing to see.
 #[derive(Debug, thiserror::Error)]
@@ -103,7 +123,17 @@ fn still(
         objects: scene::objects(problem, geometry),
         start: Moment::read(start, robot, problem, || "start".to_owned())?.data(),
         steps: Vec::new(),
+        why: None,
+        search: None,
     })
+}
+
+/// Where everything stands at a waypoint of a problem.
+///
+/// # Errors
+/// It lacks a joint or an object.
+pub fn state(problem: &ProblemFile, waypoint: &Waypoint, robot: &RobotModel) -> Result<data::StartData, ViewerError> {
+    Ok(Moment::read(waypoint, robot, problem, || "state".to_owned())?.data())
 }
 
 /// What the page shows of a plan; `note` is one line about it.
@@ -130,9 +160,17 @@ pub fn page(data: &ViewerData, figure: &str) -> Result<String, ViewerError> {
     // Inside a page an SVG element needs no heading, and no name of its language.
     let figure = figure.find("<svg").and_then(|at| figure.get(at..)).unwrap_or_default();
     let figure = figure.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
-    let mut page = String::with_capacity(PAGE.len() + json.len() + figure.len());
+    let script = SCRIPT.concat();
+    let mut page = String::with_capacity(PAGE.len() + STYLE.len() + script.len() + json.len() + figure.len());
     let mut rest = PAGE;
-    for (mark, text) in [("<!--title-->", &title), ("<!--figure-->", &figure), ("<!--data-->", &json)] {
+    let marks = [
+        ("<!--title-->", title.as_str()),
+        ("/*style*/\n", STYLE),
+        ("<!--figure-->", &figure),
+        ("<!--data-->", &json),
+        ("/*script*/\n", &script),
+    ];
+    for (mark, text) in marks {
         if let Some((before, after)) = rest.split_once(mark) {
             page.push_str(before);
             page.push_str(text);

@@ -1,5 +1,6 @@
 //! From a problem file to a problem that the planner can solve: robot, domain, start, goal.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use darrt_core::primitive::PrimitiveId;
@@ -219,6 +220,10 @@ fn robot_goal<M: TaskRobot>(goal: &file::RobotGoal, robot: &M) -> Result<RobotGo
         let wrong = RobotError::JointCount { key: "goal.robot.joints", found, expected };
         let arm = M::Joints::from_values(values).filter(|_| found == expected).ok_or(wrong)?;
         for (i, (value, limit)) in values.iter().zip(robot.limits()).enumerate() {
+            if limit.is_unlimited() && value.abs() > TAU {
+                let why = format!("has {value} for joint {i}, in radians at most a full turn of 6.283");
+                return Err(RobotError::Key { key: "goal.robot.joints", why });
+            }
             if !limit.contains(*value) {
                 let why = format!("has {value} for joint {i}, outside its limits [{}, {}]", limit.lower, limit.upper);
                 return Err(RobotError::Key { key: "goal.robot.joints", why });

@@ -69,6 +69,14 @@ pub enum BenchError {
         /// The file.
         file: PathBuf,
     },
+    /// The plan of a run, or its page, cannot be kept.
+    #[error("{}: cannot be kept: {reason}", file.display())]
+    Kept {
+        /// The file.
+        file: PathBuf,
+        /// Why not.
+        reason: String,
+    },
     /// The file of results cannot be written.
     #[error("{}: cannot be written: {source}", file.display())]
     Unwritable {

@@ -1,6 +1,7 @@
 //! What is to be run: problems x variants x seeds, in a fixed order.
 
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::digest::digest;
@@ -56,6 +57,8 @@ pub struct JobSet {
     seeds: Range<u64>,
     time_limit: Option<Duration>,
     iterations: Option<u64>,
+    /// Where plans are kept.
+    keep: Option<PathBuf>,
 }
 
 impl JobSet {
@@ -72,7 +75,7 @@ impl JobSet {
         time_limit: Option<Duration>,
         iterations: Option<u64>,
     ) -> Result<Self, BenchError> {
-        let mut set = Self { subjects: Vec::new(), variants: Vec::new(), seeds, time_limit, iterations };
+        let mut set = Self { subjects: Vec::new(), variants: Vec::new(), seeds, time_limit, iterations, keep: None };
         for subject in subjects {
             match set.subjects.iter().find(|other| other.problem.name == subject.problem.name) {
                 Some(other) if other.digest == subject.digest => {}
@@ -86,6 +89,17 @@ impl JobSet {
             }
         }
         Ok(set)
+    }
+
+    /// The same, whose plans are kept in this folder.
+    #[must_use]
+    pub fn keeping(self, folder: PathBuf) -> Self {
+        Self { keep: Some(folder), ..self }
+    }
+
+    /// Where plans are kept, if they are.
+    pub fn keep(&self) -> Option<&Path> {
+        self.keep.as_deref()
     }
 
     /// The problems.

@@ -171,6 +171,9 @@ pub struct Record {
     pub machine: Machine,
     /// When it began, seconds since 1970.
     pub started_unix_s: u64,
+    /// The name of the page of its plan, if plans are kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub page: Option<String>,
 }
 
 impl Record {
@@ -214,6 +217,7 @@ impl Record {
             primitives: primitives(result),
             machine,
             started_unix_s,
+            page: None,
         })
     }
 
@@ -324,6 +328,7 @@ pub(crate) mod tests {
                 build: "b".to_owned(),
             },
             started_unix_s: seed.saturating_add(1_700_000_000),
+            page: None,
         }
     }
 

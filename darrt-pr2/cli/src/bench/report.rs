@@ -50,7 +50,9 @@ impl Look {
 }
 
 /// The text of the page, problems in the order of `known` first; the same results give the same bytes.
-pub fn page(all: &Collection, known: &[&str]) -> String {
+///
+/// `plans` is where the pages of kept plans are, as a link that ends in a slash or is empty.
+pub fn page(all: &Collection, known: &[&str], plans: Option<&str>) -> String {
     let summaries = summaries(all, known);
     let look = Look { variants: all.variants(&VARIANTS.map(|variant| variant.name)) };
     let mut problems: Vec<&str> = summaries.iter().map(|summary| summary.problem.as_str()).collect();
@@ -78,6 +80,9 @@ pub fn page(all: &Collection, known: &[&str]) -> String {
     section(&mut body, "Where the time goes", &format!("{SHARES}{swatches}{}", shares::draw(&rows)));
     section(&mut body, "Would restarts help?", &format!("{RESTARTS}{}", tables::restarts(&rows)));
     section(&mut body, "Where extensions end", &format!("{ENDS}{}", tables::ends(&rows)));
+    if let Some(links) = plans.and_then(|plans| tables::plans(all, &summaries, plans)) {
+        section(&mut body, "Plans that were kept", &links);
+    }
     section(&mut body, "How to read this", READING);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -231,7 +236,7 @@ mod tests {
 
     #[test]
     fn the_page_loads_nothing_and_names_from_files_stay_text() {
-        let page = page(&results(), &KNOWN);
+        let page = page(&results(), &KNOWN, None);
         for loads in ["http:", "https:", "src=", "href", "url(", "@import", "<script", "<link", "<iframe"] {
             assert!(!page.contains(loads), "{loads}");
         }
@@ -240,7 +245,7 @@ mod tests {
 
     #[test]
     fn the_page_tells_machine_limits_and_censoring_and_is_the_same_again() {
-        let text = page(&results(), &KNOWN);
+        let text = page(&results(), &KNOWN, None);
         for words in
             ["24 runs: 2 problems", "20 solved", "host: CPU, 2 cores, 1 run at a time", "60 s", "censored", "&gt; 60"]
         {
@@ -250,8 +255,21 @@ mod tests {
         {
             assert_eq!(text.matches(open).count(), text.matches(close).count(), "{open}");
         }
-        assert_eq!(text, page(&results(), &KNOWN));
-        assert!(page(&Collection::default(), &KNOWN).contains("0 runs"));
+        assert_eq!(text, page(&results(), &KNOWN, None));
+        assert!(page(&Collection::default(), &KNOWN, None).contains("0 runs"));
+    }
+
+    #[test]
+    fn plans_that_were_kept_are_linked_and_no_others() {
+        let mut all = Collection::default();
+        for seed in 0..3 {
+            let page = (seed < 2).then(|| format!("bowl-default-{seed}.html"));
+            all.add(Record { page, ..sample("bowl", "default", seed, 0.1, true) }, "a").unwrap();
+        }
+        let text = page(&all, &KNOWN, Some("../plans/"));
+        assert!(text.contains("href=\"../plans/bowl-default-1.html\""));
+        assert_eq!(text.matches("href=").count(), 2);
+        assert!(!page(&all, &KNOWN, None).contains("href="), "nobody knows where they are");
     }
 
     #[test]

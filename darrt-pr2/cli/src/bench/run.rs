@@ -10,6 +10,7 @@ use darrt_core::observe::{Event, Observer};
 
 use super::error::BenchError;
 use super::job::{Job, JobSet};
+use super::kept;
 use super::machine::Machine;
 use super::record::Record;
 use darrt_task::planning::PlanResult;
@@ -74,8 +75,13 @@ fn one(
     let result: PlanResult = program
         .plan(&request, cancel, &mut attempts)
         .map_err(|source| BenchError::Planning { problem: key.problem.clone(), source: Box::new(source) })?;
+    let page = match set.keep() {
+        Some(folder) => kept::keep(program, folder, (&key, &conditions.problem_digest), &result)?,
+        None => None,
+    };
     let paper = request.problem.paper.as_ref().map(|paper| paper.planning_time_s);
-    Ok(Record::of(program, key, conditions, &result, attempts.ended, (machine.clone(), started), paper))
+    let record = Record::of(program, key, conditions, &result, attempts.ended, (machine.clone(), started), paper);
+    Ok(record.map(|record| Record { page, ..record }))
 }
 
 /// Counts the iterations of each attempt; for one thread, on which attempts do not overlap.

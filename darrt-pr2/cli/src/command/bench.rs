@@ -12,7 +12,9 @@ use crate::bench::record::{Key, Record};
 use crate::bench::run as workers;
 use crate::bench::statistics::summaries;
 use crate::bench::variant::VARIANTS;
-use crate::bench::{BenchError, Collection, Job, JobSet, Journal, Shard, Subject, Variant, journal, ompl_log, report};
+use crate::bench::{
+    BenchError, Collection, Job, JobSet, Journal, Shard, Subject, Variant, journal, kept, ompl_log, report,
+};
 use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
 use crate::progress::Bar;
@@ -40,7 +42,8 @@ pub(crate) fn run(program: &dyn Program, options: &BenchOptions, output: &mut Ou
     told.write(&all, &known)?;
     if !options.quiet {
         let summaries = summaries(&all, &known);
-        output.print(&bench_table::table(&summaries))?;
+        output.print(&bench_table::times(&summaries))?;
+        output.print(&bench_table::efforts(&summaries))?;
         output.print(&bench_table::plans(&summaries))?;
         let words = told.words();
         if !words.is_empty() {
@@ -65,6 +68,10 @@ enum End {
 /// Does the runs that are not in the file yet; all that were asked for.
 fn measure(program: &dyn Program, options: &BenchOptions, output: &mut Output) -> Result<(Collection, End), Failure> {
     let set = job_set(program, options)?;
+    let set = match &options.keep {
+        Some(folder) => set.keeping(folder.clone()),
+        None => set,
+    };
     let path = options.out.clone().unwrap_or_else(|| PathBuf::from(DEFAULT_OUT));
     let path = output::writable(&path)?;
     let machine = Machine::this(options.jobs.unwrap_or_else(|| (cores() / 2).max(1)));
@@ -177,6 +184,7 @@ fn merge(options: &BenchOptions) -> Result<Collection, Failure> {
 struct Told {
     report: Option<PathBuf>,
     logs: Option<PathBuf>,
+    plans: Option<PathBuf>,
 }
 
 impl Told {
@@ -195,17 +203,18 @@ impl Told {
                 format!("{}: cannot be both the page and a file of results, which would be lost", page.display());
             return Err(Failure::input(text));
         }
-        if let Some(folder) = &options.ompl {
+        for folder in [&options.ompl, &options.keep].into_iter().flatten() {
             std::fs::create_dir_all(folder).map_err(|error| {
                 Failure::new(Exit::CannotWrite, format!("{}: cannot be made: {error}", folder.display()))
             })?;
         }
-        Ok(Self { report, logs: options.ompl.clone() })
+        Ok(Self { report, logs: options.ompl.clone(), plans: options.keep.clone() })
     }
 
     fn write(&self, all: &Collection, known: &[&str]) -> Result<(), Failure> {
         if let Some(path) = &self.report {
-            output::write_file(path, report::page(all, known))?;
+            let plans = self.plans.as_deref().and_then(|folder| kept::link_to(folder, path));
+            output::write_file(path, report::page(all, known, plans.as_deref()))?;
         }
         let Some(folder) = &self.logs else { return Ok(()) };
         for problem in all.problems(known) {

@@ -5,30 +5,19 @@ use crate::bench::survival::Quantile;
 use crate::bench::variant::VARIANTS;
 use crate::table;
 
-/// One row per problem and variant.
-pub(crate) fn table(summaries: &[Summary]) -> String {
-    let header = [
-        "problem",
-        "variant",
-        "solved",
-        "median s",
-        "95 % interval",
-        "quartiles",
-        "95th",
-        "iterations",
-        "nodes",
-        "restarts",
-        "paper s",
-    ];
-    let mut table = table::with_header(header);
-    let mut problem = "";
-    for summary in summaries {
-        // A problem is named once.
-        let name = if summary.problem == problem { "" } else { summary.problem.as_str() };
-        problem = &summary.problem;
-        table.add_row(row(name, summary));
-    }
-    let text = table::finished(table, [2, 3, 4, 5, 6, 7, 8, 9, 10]);
+/// How long the planner took: one row per problem and variant.
+pub(crate) fn times(summaries: &[Summary]) -> String {
+    let header = ["problem", "variant", "solved", "median s", "95 % interval", "quartiles", "95th"];
+    let text = rows(&header, summaries, |summary| {
+        let time = |q: f64| summary.time.quantile(q).to_string();
+        vec![
+            format!("{}/{}", summary.solved, summary.runs),
+            time(0.5),
+            summary.median_interval.map_or_else(String::new, |[low, high]| range(low, high)),
+            range(summary.time.quantile(0.25), summary.time.quantile(0.75)),
+            time(0.95),
+        ]
+    });
     let is_censored = summaries.iter().any(|summary| summary.solved < summary.runs);
     let note = if is_censored {
         "\n> : so many runs ended without a plan that all that is known is a lower bound"
@@ -38,29 +27,35 @@ pub(crate) fn table(summaries: &[Summary]) -> String {
     format!("{}{note}\n", text.trim_end())
 }
 
+/// What the search needed: one row per problem and variant, medians, and the seconds that the paper gives.
+pub(crate) fn efforts(summaries: &[Summary]) -> String {
+    rows(&["problem", "variant", "iterations", "nodes", "restarts", "paper s"], summaries, |summary| {
+        vec![
+            whole(summary.iterations),
+            whole(summary.nodes),
+            summary.restarts.to_string(),
+            summary.paper_s.map_or_else(String::new, |paper| paper.to_string()),
+        ]
+    })
+}
+
 /// The plans: one row per problem and variant, medians.
 pub(crate) fn plans(summaries: &[Summary]) -> String {
     let header = [
         "problem",
         "variant",
         "steps",
-        "driven m",
+        "driven\nm",
         "95th",
-        "turned \u{b0}",
-        "arm rad",
-        "hand m",
-        "execution s",
-        "clearance mm",
+        "turned\n\u{b0}",
+        "arm\nrad",
+        "hand\nm",
+        "execution\ns",
+        "clearance\nmm",
     ];
-    let mut table = table::with_header(header);
-    let mut problem = "";
-    for summary in summaries {
-        let name = if summary.problem == problem { "" } else { summary.problem.as_str() };
-        problem = &summary.problem;
+    rows(&header, summaries, |summary| {
         let quality = &summary.quality;
-        table.add_row([
-            name.to_owned(),
-            summary.variant.clone(),
+        vec![
             whole(summary.steps),
             hundredths(quality.base_m),
             hundredths(quality.base_95_m),
@@ -69,30 +64,24 @@ pub(crate) fn plans(summaries: &[Summary]) -> String {
             hundredths(quality.hand_m),
             whole(quality.execution_s),
             whole(quality.clearance_m.map(|metres| metres * 1e3)),
-        ]);
+        ]
+    })
+}
+
+/// A table that names problem and variant, the problem once, then tells `numbers`.
+fn rows(header: &[&str], summaries: &[Summary], numbers: impl Fn(&Summary) -> Vec<String>) -> String {
+    let mut table = table::unbroken(header);
+    let mut problem = "";
+    for summary in summaries {
+        let name = if summary.problem == problem { "" } else { summary.problem.as_str() };
+        problem = &summary.problem;
+        table.add_row([name.to_owned(), summary.variant.clone()].into_iter().chain(numbers(summary)));
     }
-    table::finished(table, [2, 3, 4, 5, 6, 7, 8, 9])
+    table::finished(table, 2..header.len())
 }
 
 fn hundredths(value: Option<f64>) -> String {
     value.map_or_else(|| "\u{2013}".to_owned(), |value| format!("{value:.2}"))
-}
-
-fn row(name: &str, summary: &Summary) -> [String; 11] {
-    let time = |q: f64| summary.time.quantile(q).to_string();
-    [
-        name.to_owned(),
-        summary.variant.clone(),
-        format!("{}/{}", summary.solved, summary.runs),
-        time(0.5),
-        summary.median_interval.map_or_else(String::new, |[low, high]| range(low, high)),
-        range(summary.time.quantile(0.25), summary.time.quantile(0.75)),
-        time(0.95),
-        whole(summary.iterations),
-        whole(summary.nodes),
-        summary.restarts.to_string(),
-        summary.paper_s.map_or_else(String::new, |paper| paper.to_string()),
-    ]
 }
 
 fn range(low: Quantile, high: Quantile) -> String {

@@ -27,9 +27,10 @@ pub(crate) fn run(program: &dyn Program, options: &ExplainOptions, output: &mut 
     };
     let cancel = Cancel::new();
     listen(&cancel);
-    let explanation = program
-        .explain(&request, &cancel)
-        .map_err(|error| Failure::input(on_one_line(&format!("{}: {error}", options.problem))))?;
+    let explanation = program.explain(&request, &cancel).map_err(|error| {
+        let exit = if error.is_impossible() { Exit::Impossible } else { Exit::BadInput };
+        Failure::new(exit, on_one_line(&format!("{}: {error}", options.problem)))
+    })?;
     if options.json {
         let text = serde_json::to_string_pretty(&explanation);
         output.print(&text.map_err(|error| Failure::new(Exit::CannotWrite, error.to_string()))?)?;

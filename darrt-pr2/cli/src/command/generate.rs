@@ -20,7 +20,13 @@ use darrt_task::text::counted;
 /// # Errors
 /// A problem that cannot be read, a family of which the planner solves none, files that cannot be written.
 pub(crate) fn run(program: &dyn Program, options: &GenerateOptions, output: &mut Output) -> Result<Exit, Failure> {
-    let base = program.open(&options.problem)?;
+    // One problem is printed as it is, without a word before it.
+    let is_quiet = options.quiet || options.into.is_none();
+    let mut base = plan::opened(program, (&options.problem, options.robot.as_ref()), is_quiet, output)?;
+    if let Some(file) = &mut base.robot.file {
+        // The problems are written elsewhere.
+        *file = std::path::absolute(&*file).unwrap_or_else(|_| file.clone());
+    }
     let count = options.seeds.end - options.seeds.start;
     let cancel = Cancel::new();
     plan::listen(&cancel);

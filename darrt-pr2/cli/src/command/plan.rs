@@ -1,16 +1,19 @@
 //! `darrt plan`: solve, verify, print, write.
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use darrt_core::budget::{Cancel, Stop};
+use darrt_core::search::Algorithm;
 
 use super::check;
 use crate::args::PlanOptions;
 use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
 use crate::progress::Progress;
-use crate::{diagnosis, drawing, safety, statistics, steps};
+use crate::why_page::{self, Told};
+use crate::{browser, diagnosis, drawing, safety, statistics, steps};
 use darrt_task::diagnosis::Diagnosis;
 use darrt_task::picture::{Extent, Format, Story, Travel};
 use darrt_task::plan_file::PlanFile;
@@ -18,22 +21,28 @@ use darrt_task::planning::{PlanRequest, PlanResult};
 use darrt_task::planning_error::PlanningError;
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
+use darrt_task::recording::Recording;
 use darrt_task::replan::{ReplanRequest, Replanned};
 use darrt_task::robot::{RobotError, RobotFacts};
-use darrt_task::text::counted;
+use darrt_task::text::{counted, on_one_line};
+use darrt_task::viewer::search::SearchData;
 
 /// Plans and reports.
 ///
 /// # Errors
 /// Every end but a verified plan that is written, with its exit code.
 pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
-    let problem = options.safety.applied(opened(program, options, output)?, &options.problem)?;
+    let problem = options.safety.applied(
+        opened(program, (&options.problem, options.robot.as_ref()), options.quiet, output)?,
+        &options.problem,
+    )?;
+    check_recorded(options)?;
     let files = Files::choose(options)?;
     let request = request(options, problem);
     let cancel = Cancel::new();
     listen(&cancel);
     let mut progress = Progress::start(&request.problem.name, limit(&request), options.quiet);
-    let (result, kept) = planned(program, options, &request, &cancel, &mut progress)?;
+    let (result, kept) = planned(program, options, (&request, &files), &cancel, &mut progress)?;
     progress.finish();
     if let Some(kept) = kept.filter(|_| !options.quiet) {
         output.print(&kept)?;
@@ -65,26 +74,52 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
             output.print(&safety::notices(&proof.warnings))?;
         }
         check::notices(plan, output)?;
+        for shown in result.doubts.iter().filter_map(|doubt| doubt.refuted.as_ref()) {
+            output.print(&format!("notice:   {shown}"))?;
+        }
     }
     // Last: nobody waits for a picture to read the steps.
-    files.draw(plan, &story, &robot)?;
+    files.keep(&result)?;
+    files.draw(plan, &story, &robot, result.recording.as_ref())?;
     if !options.quiet {
-        output.print(&files.words())?;
+        output.print(&files.words(options))?;
+    }
+    if let Some((path, _)) = files.picture.as_ref().filter(|_| options.open) {
+        browser::open(path)?;
     }
     Ok(Exit::Solved)
 }
 
 /// The problem, with the robot that is asked for.
-fn opened(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<ProblemFile, Failure> {
-    let Some(robot) = &options.robot else { return Ok(program.open(&options.problem)?) };
-    let problem = program.problems().open(&options.problem)?;
-    let failed = |error: RobotError| Failure::input(located(&options.problem, &error.to_string()));
+///
+/// # Errors
+/// What cannot be read, or does not fit the robot.
+pub(super) fn opened(
+    program: &dyn Program,
+    (name, robot): (&str, Option<&String>),
+    quiet: bool,
+    output: &mut Output,
+) -> Result<ProblemFile, Failure> {
+    let Some(robot) = robot else { return Ok(program.open(name)?) };
+    let problem = program.problems().open(name)?;
+    let failed = |error: RobotError| Failure::input(located(name, &error.to_string()));
     let (problem, changes) = program.with_robot(problem, robot).map_err(failed)?;
-    program.check(&problem, &options.problem)?;
-    if !options.quiet {
+    program.check(&problem, name)?;
+    if !quiet {
         changes.iter().try_for_each(|change| output.print(&format!("{}: {change}", problem.name)))?;
     }
     Ok(problem)
+}
+
+/// Searches whose trees are not of the whole problem are not recorded.
+fn check_recorded(options: &PlanOptions) -> Result<(), Failure> {
+    let whole = [Algorithm::Darrt, Algorithm::Connect];
+    match options.search.algorithms().iter().find(|algorithm| !whole.contains(algorithm)) {
+        Some(other) if options.record.is_some() => Err(Failure::input(format!(
+            "--record: the search `{other}` has no tree of the whole problem; choose --search darrt or connect"
+        ))),
+        _ => Ok(()),
+    }
 }
 
 fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
@@ -104,6 +139,7 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
         cost: options.cost.clone().map_or_else(Default::default, Into::into),
         changes: Vec::new(),
         hints: Vec::new(),
+        record: options.record.is_some(),
     }
 }
 
@@ -111,11 +147,11 @@ fn request(options: &PlanOptions, problem: ProblemFile) -> PlanRequest {
 fn planned(
     program: &dyn Program,
     options: &PlanOptions,
-    request: &PlanRequest,
+    (request, files): (&PlanRequest, &Files),
     cancel: &Cancel,
     progress: &mut Progress,
 ) -> Result<(PlanResult, Option<String>), Failure> {
-    let refused = |error: PlanningError| refused(options, request, &error);
+    let refused = |error: PlanningError| refused(program, options, (request, files), &error);
     let Some(path) = &options.from else {
         return Ok((program.plan(request, cancel, progress).map_err(refused)?, None));
     };
@@ -171,15 +207,45 @@ fn failed(
         why = format!("{why}\n  {}", diagnosis::words::of_partial(plan, &path));
         exit = Exit::Partial;
     }
+    let told = Told { problem: &request.problem, result: Some(result), diagnosis: &diagnosis };
+    // What cannot be written or opened must not hide why there is no plan.
+    // Who interrupts does not wait for a page.
+    let is_wanted = exit != Exit::Interrupted;
+    let page = || if is_wanted { files.write_why(program, &told) } else { Ok(None) };
+    match files.keep(result).and_then(|()| page()) {
+        Ok(None) => {}
+        Ok(Some(page)) => {
+            why = format!("{why}\n  to see it: {}", page.display());
+            if let Err(failure) = if options.open { browser::open(&page) } else { Ok(()) } {
+                why = format!("{why}\n  {}", failure.message);
+            }
+        }
+        Err(failure) => {
+            why = format!("{why}\n  {}", failure.message);
+            exit = failure.exit;
+        }
+    }
     Ok(Failure::new(exit, format!("{name}: no plan found (seed {}): {why}", request.seed)))
 }
 
-/// The error of a problem that cannot be planned; what keeps a plan away is written down as well.
-fn refused(options: &PlanOptions, request: &PlanRequest, error: &PlanningError) -> Failure {
-    let written = Diagnosis::of_error(&request.problem.name, error).map(|diagnosis| write_why(options, &diagnosis));
-    match written {
-        Some(Err(failure)) => failure,
-        _ => Failure::input(located(&options.problem, &error.to_string())),
+/// The error of a problem that cannot be planned; what keeps a plan away is written down as well, and drawn.
+fn refused(
+    program: &dyn Program,
+    options: &PlanOptions,
+    (request, files): (&PlanRequest, &Files),
+    error: &PlanningError,
+) -> Failure {
+    let exit = if error.is_impossible() { Exit::Impossible } else { Exit::BadInput };
+    let message = on_one_line(&located(&options.problem, &error.to_string())).into_owned();
+    let Some(diagnosis) = Diagnosis::of_error(&request.problem.name, error) else { return Failure::new(exit, message) };
+    if let Err(failure) = write_why(options, &diagnosis) {
+        return failure;
+    }
+    let told = Told { problem: &request.problem, result: None, diagnosis: &diagnosis };
+    match files.write_why(program, &told) {
+        Err(failure) => Failure::new(exit, format!("{message}; {}", failure.message)),
+        Ok(Some(page)) => Failure::new(exit, format!("{message}; to see it: {}", page.display())),
+        Ok(None) => Failure::new(exit, message),
     }
 }
 
@@ -197,9 +263,9 @@ fn summary(request: &PlanRequest, result: &PlanResult, is_interrupted: bool) -> 
         None => "solved in".to_owned(),
     };
     format!(
-        "{}: {solved} {:.1} s{} (seed {}, {}, {}, largest tree {})",
+        "{}: {solved} {}{} (seed {}, {}, {}, largest tree {})",
         request.problem.name,
-        result.elapsed.as_secs_f64(),
+        diagnosis::seconds(result.elapsed),
         if is_interrupted { ", interrupted" } else { "" },
         request.seed,
         counted(result.iterations, "iteration"),
@@ -235,6 +301,7 @@ fn improvement(result: &PlanResult, story: &Story, robot: &RobotFacts) -> Result
 struct Files {
     plan: PathBuf,
     picture: Option<(PathBuf, Format)>,
+    record: Option<PathBuf>,
 }
 
 impl Files {
@@ -254,55 +321,97 @@ impl Files {
             Some(path) => Some((output::writable(&path)?, Format::of_path(&path)?)),
             None => None,
         };
+        let record = options.record.as_deref().map(output::writable).transpose()?;
         let is_problem = |path: &Path| asked.exists() && output::is_same_file(asked, path);
-        if let Some(path) =
-            [Some(&plan), picture.as_ref().map(|(path, _)| path)].into_iter().flatten().find(|p| is_problem(p))
-        {
+        let all = [Some(&plan), picture.as_ref().map(|(path, _)| path), record.as_ref()];
+        if let Some(path) = all.into_iter().flatten().find(|path| is_problem(path)) {
             return Err(Failure::input(format!("{}: is the problem file itself, it would be lost", path.display())));
         }
         if picture.as_ref().is_some_and(|(path, _)| output::is_same_file(path, &plan)) {
             let text = format!("{}: cannot be both the plan and the picture", plan.display());
             return Err(Failure::input(text));
         }
-        Ok(Self { plan, picture })
+        if let Some(path) = &record
+            && [Some(&plan), picture.as_ref().map(|(path, _)| path)]
+                .into_iter()
+                .flatten()
+                .any(|other| output::is_same_file(path, other))
+        {
+            let text = format!("{}: cannot be both the recorded search and the plan or picture", path.display());
+            return Err(Failure::input(text));
+        }
+        Ok(Self { plan, picture, record })
     }
 
-    fn draw(&self, plan: &PlanFile, story: &Story, robot: &RobotFacts) -> Result<(), Failure> {
+    fn draw(
+        &self,
+        plan: &PlanFile,
+        story: &Story,
+        robot: &RobotFacts,
+        recording: Option<&Recording>,
+    ) -> Result<(), Failure> {
         match &self.picture {
+            Some((path, Format::Html)) => {
+                let search = recording.map(SearchData::of);
+                let page = drawing::page(story, Some(plan), robot, (Extent::Whole, None, search))?;
+                output::write_file(path, page)
+            }
             Some((path, format)) => {
-                output::write_file(path, &drawing::file(story, Some(plan), robot, *format, Extent::Whole)?)
+                output::write_file(path, drawing::file(story, Some(plan), robot, *format, Extent::Whole)?)
             }
             None => Ok(()),
         }
     }
 
+    /// Writes the recorded search, if there is one.
+    fn keep(&self, result: &PlanResult) -> Result<(), Failure> {
+        match (&self.record, &result.recording) {
+            (Some(path), Some(recording)) => Ok(recording.write(path)?),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes the page that tells why there is no plan, unless no page is wanted; says where.
+    fn write_why(&self, program: &dyn Program, told: &Told<'_>) -> Result<Option<PathBuf>, Failure> {
+        let Some((picture, Format::Html)) = &self.picture else { return Ok(None) };
+        let path = with_mark(picture, "why");
+        output::write_file(&path, why_page::page(program, told)?)?;
+        Ok(Some(path))
+    }
+
     /// Writes the beginning of a plan beside where the plan would be, and its picture; says where.
     fn write_partial(&self, program: &dyn Program, plan: &PlanFile) -> Result<PathBuf, Failure> {
         let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
-        let path = of_partial(&self.plan);
-        let picture = self.picture.as_ref().map(|(picture, format)| (of_partial(picture), *format));
+        let path = with_mark(&self.plan, "partial");
         plan.write(&path)?;
-        let files = Self { plan: path.clone(), picture };
-        files.draw(plan, &Story::of_plan(plan, &robot)?, &robot)?;
+        // A page tells why there is no plan as well, and is written then.
+        let picture = self.picture.as_ref().filter(|(_, format)| *format != Format::Html);
+        let picture = picture.map(|(picture, format)| (with_mark(picture, "partial"), *format));
+        let files = Self { plan: path.clone(), picture, record: None };
+        files.draw(plan, &Story::of_plan(plan, &robot)?, &robot, None)?;
         Ok(path)
     }
 
-    fn words(&self) -> String {
-        let plan = format!("plan:     {}", self.plan.display());
-        match &self.picture {
-            Some((path, _)) => format!("{plan}\npicture:  {}", path.display()),
-            None => plan,
+    fn words(&self, options: &PlanOptions) -> String {
+        let mut words = format!("plan:     {}", self.plan.display());
+        if let Some((path, _)) = &self.picture {
+            let _ = write!(words, "\npicture:  {}", path.display());
         }
+        if let Some(path) = &options.record {
+            let _ = write!(words, "\nsearch:   {}", path.display());
+        }
+        words
     }
 }
 
-/// Where the beginning of a plan goes that would be written to `path`: `a/b.plan.json` and `a/b.json` have
-/// `a/b.partial.json`. What an earlier run wrote there stays.
-fn of_partial(path: &Path) -> PathBuf {
+/// Where something else goes than the plan that would be written to `path`: with the mark `partial`, `a/b.plan.json` and
+/// `a/b.json` have `a/b.partial.json`. What an earlier run wrote there stays.
+fn with_mark(path: &Path, mark: &str) -> PathBuf {
     let bare = path.with_extension("");
     let bare = if bare.extension().is_some_and(|ending| ending == "plan") { bare.with_extension("") } else { bare };
     let mut name = bare.into_os_string();
-    name.push(".partial");
+    name.push(".");
+    name.push(mark);
     if let Some(ending) = path.extension() {
         name.push(".");
         name.push(ending);
@@ -343,7 +452,7 @@ mod tests {
             ("a.b/p", "a.b/p.partial"),
             ("p.html", "p.partial.html"),
         ] {
-            assert_eq!(of_partial(Path::new(plan)), Path::new(partial));
+            assert_eq!(with_mark(Path::new(plan), "partial"), Path::new(partial));
         }
     }
 

@@ -1,16 +1,11 @@
 //! `darrt problems`: what is built in.
 
-use comfy_table::ContentArrangement;
-
 use crate::args::ProblemsOptions;
 use crate::exit::{Exit, Failure};
 use crate::output::Output;
 use crate::table;
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
-
-/// Width of the table in characters.
-const WIDTH: u16 = 100;
 
 /// Lists the problems, or prints the text of one.
 ///
@@ -37,7 +32,6 @@ fn list(problems: &[ProblemFile]) -> String {
     let from_paper = problems.iter().any(|problem| problem.paper.is_some());
     let header = ["name", "what it is about", "paper"];
     let mut table = table::with_header(header.into_iter().take(if from_paper { 3 } else { 2 }));
-    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
     for problem in problems {
         // The title begins with the problem's name, which has a column of its own.
         let title = problem.title.split_once(": ").map_or(problem.title.as_str(), |(_, rest)| rest);

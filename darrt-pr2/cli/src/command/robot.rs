@@ -51,6 +51,9 @@ fn check(program: &dyn Program, options: &RobotCheckOptions, output: &mut Output
     let is_shipped = shipped::all().iter().any(|robot| robot.name == *name);
     output.print(&format!("{name}: {}", inspection.name))?;
     inspection.understood.iter().try_for_each(|line| output.print(line))?;
+    if options.pairs {
+        inspection.pairs.iter().try_for_each(|line| output.print(&format!("pair:     {line}")))?;
+    }
     inspection.odd.iter().try_for_each(|line| output.print(&format!("odd:      {line}")))?;
     if let Some(path) = &options.problem {
         let place = output::writable(path)?;
@@ -112,7 +115,8 @@ fn new(options: &RobotNewOptions, output: &mut Output) -> Result<Exit, Failure> 
     }
     let place = output::writable(&path)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let text = guess::robot_file(&options.urdf, folder)?;
+    let known = guess::Known { packages: options.package.clone() };
+    let text = guess::robot_file(&options.urdf, folder, &known)?;
     output::write_file(&place, text)?;
     output.print(&format!(
         "robot:    {}\nLook at the lines with a question mark, then: darrt robot check {}",

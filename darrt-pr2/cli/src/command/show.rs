@@ -1,23 +1,35 @@
-//! `darrt show`: draw a problem or a plan.
+//! `darrt show`: draw a problem, a plan or a recorded search.
 
 use std::path::{Path, PathBuf};
 
 use crate::args::ShowOptions;
 use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
-use crate::{drawing, steps};
-use darrt_task::file_kind;
+use crate::{browser, drawing, steps};
+use darrt_task::file_kind::{self, FileKind};
 use darrt_task::picture::{Extent, Format, Story};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
+use darrt_task::recording::{Recording, graph};
 use darrt_task::robot::RobotFacts;
+use darrt_task::text::counted;
+use darrt_task::viewer::search::SearchData;
 
 /// Draws the picture; for a plan prints its steps too. The plan is not judged.
 ///
 /// # Errors
 /// What cannot be read, built or written.
 pub(crate) fn run(program: &dyn Program, options: &ShowOptions, output: &mut Output) -> Result<Exit, Failure> {
+    let path = Path::new(&options.source);
+    if program.problems().find(&options.source).is_none() && FileKind::of_file(path) == Some(FileKind::Recording) {
+        return recorded(program, options, output);
+    }
+    if let Some(option) =
+        [("--attempt", options.attempt), ("--iteration", options.iteration)].iter().find(|(_, value)| value.is_some())
+    {
+        return Err(Failure::input(format!("{}: {} is for recorded searches", options.source, option.0)));
+    }
     let Source { story, plan, robot } = read(program, &options.source)?;
     let default = || PathBuf::from(format!("{}.html", output::file_stem(&story.problem.name)));
     let path = options.output.clone().unwrap_or_else(default);
@@ -29,6 +41,58 @@ pub(crate) fn run(program: &dyn Program, options: &ShowOptions, output: &mut Out
         output.print(&steps::table(&story))?;
     }
     output.print(&format!("picture:  {}", path.display()))?;
+    if options.open {
+        browser::open(&place)?;
+    }
+    Ok(Exit::Solved)
+}
+
+/// Shows a recorded search: its trees as a layer of the page, or as a graph.
+fn recorded(program: &dyn Program, options: &ShowOptions, output: &mut Output) -> Result<Exit, Failure> {
+    let source = Path::new(&options.source);
+    let whole = Recording::read(source)?;
+    whole.problem.validate(&options.source)?;
+    let recording = whole.at(options.attempt, options.iteration);
+    if recording.attempts.is_empty() {
+        let there: Vec<_> = whole.attempts.iter().map(|attempt| attempt.attempt.to_string()).collect();
+        let text = format!("{}: has no such attempt; there are {}", options.source, there.join(", "));
+        return Err(Failure::input(text));
+    }
+    let default = || PathBuf::from(format!("{}.search.html", output::file_stem(&recording.problem.name)));
+    let path = options.output.clone().unwrap_or_else(default);
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let place = output::writable(&path)?;
+    let bytes = match ending.as_str() {
+        "dot" | "gv" => graph::dot(&recording).into_bytes(),
+        "graphml" => graph::graphml(&recording).into_bytes(),
+        "html" | "htm" => {
+            let problem = &recording.problem;
+            let robot =
+                program.facts(problem).map_err(|error| Failure::input(format!("{}: {error}", options.source)))?;
+            let story = Story::of_problem(problem, &robot)?;
+            drawing::page(&story, None, &robot, (Extent::Whole, None, Some(SearchData::of(&recording))))?
+        }
+        _ => {
+            let text = format!("{}: a recorded search becomes an .html, .graphml or .dot file", path.display());
+            return Err(Failure::input(text));
+        }
+    };
+    output::write_file(&place, bytes)?;
+    for attempt in &recording.attempts {
+        let solved = if recording.solved == Some(attempt.attempt) { ", with the plan" } else { "" };
+        output.print(&format!(
+            "attempt {}: {}, {}, {} taken back, {} blocked{solved}",
+            attempt.attempt,
+            counted(attempt.iterations, "iteration"),
+            counted(attempt.nodes.len() as u64, "node"),
+            attempt.removed.len(),
+            counted(attempt.blocked.len() as u64, "extension"),
+        ))?;
+    }
+    output.print(&format!("picture:  {}", path.display()))?;
+    if options.open {
+        browser::open(&place)?;
+    }
     Ok(Exit::Solved)
 }
 

@@ -100,6 +100,22 @@ impl Desk {
         self.refused(&arguments, 2, &parts);
     }
 
+    /// Plans `problem` and expects to be told and shown why there is no plan, with this exit code; what was there before is
+    /// left as it was.
+    pub(crate) fn plan_hopeless(&self, problem: &str, exit: i32, parts: &[&str]) {
+        let before = self.files();
+        let output = self.run(&["plan", problem, "--iterations", "1", "-o", "kept.json", "--picture", "kept.html"]);
+        let complaint = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(exit), "{complaint}");
+        for part in parts {
+            assert!(complaint.contains(part), "`{part}` is missing from: {complaint}");
+        }
+        let mut after = self.files();
+        assert!(after.remove("kept.why.html").is_some(), "{complaint}");
+        assert_eq!(after, before, "files were made or changed");
+        std::fs::remove_file(self.folder.path().join("kept.why.html")).unwrap();
+    }
+
     /// Names and sizes of all files, and the content of those that must not change.
     fn files(&self) -> BTreeMap<String, (u64, Option<String>)> {
         let entries = std::fs::read_dir(self.folder.path()).unwrap().map(|entry| {

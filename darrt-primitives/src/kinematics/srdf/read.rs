@@ -146,9 +146,10 @@ impl<'a> Reader<'a> {
         let (mut chains, mut virtual_joints) = (Vec::new(), BTreeSet::new());
         for child in node.children().filter(Node::is_element) {
             match child.tag_name().name() {
-                "joint" => match self.joint(child)?.0 {
-                    AnyJoint::Virtual(joint) => _ = virtual_joints.insert(joint),
-                    AnyJoint::Robot(joint) => {
+                "joint" => match self.known_joint(child)?.map(|(joint, _)| joint) {
+                    None => {}
+                    Some(AnyJoint::Virtual(joint)) => _ = virtual_joints.insert(joint),
+                    Some(AnyJoint::Robot(joint)) => {
                         joints.insert(joint);
                         links.extend(self.robot.joints.get(joint).map(|joint| joint.child));
                     }
@@ -305,7 +306,9 @@ impl<'a> Reader<'a> {
             return self.joint(node).map(Some);
         }
         let element = node.tag_name().name();
-        self.remark(node, format!("<{element}> names the joint {name:?}, which the robot does not have"));
+        let hint = nearest(name, self.joints.keys().copied())
+            .map_or_else(String::new, |word| format!("; did you mean {word:?}?"));
+        self.remark(node, format!("<{element}> names the joint {name:?}, which the robot does not have{hint}"));
         Ok(None)
     }
 

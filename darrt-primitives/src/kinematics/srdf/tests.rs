@@ -64,8 +64,8 @@ fn errors_name_element_and_line() {
     let cases = [
         ("<group/>", "line 2: <group> has no `name`"),
         (
-            "<group name='a'>\n<joint name='trun'/></group>",
-            "line 3: <joint> names the joint \"trun\", which does not exist, did you mean \"turn\"?",
+            "<group name='a'>\n<link name='hnad'/></group>",
+            "line 3: <link> names the link \"hnad\", which does not exist, did you mean \"hand\"?",
         ),
         ("<group name='a'/>\n<group name='a'/>", "line 3: <group> \"a\" has the name of another"),
         (
@@ -97,6 +97,15 @@ fn errors_name_element_and_line() {
     for (body, expected) in cases {
         assert_eq!(said(body), expected);
     }
+}
+
+#[test]
+fn a_joint_of_another_variant_is_a_remark_in_a_group_too() {
+    let text = "<robot name='generic_arm'><group name='a'><joint name='trun'/><joint name='bend'/></group></robot>";
+    let read = SemanticDescription::from_text(text, &robot()).unwrap();
+    assert_eq!(read.groups[0].joints.len(), 1);
+    let said = "<joint> names the joint \"trun\", which the robot does not have; did you mean \"turn\"?";
+    assert_eq!(read.remarks[0].text, said);
 }
 
 #[test]

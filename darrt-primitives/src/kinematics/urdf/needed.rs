@@ -1,11 +1,13 @@
 //! What planning needs of a robot description: the rest is blanked out before it is parsed, so that no inertia, material, texture,
 //! transmission or simulator's element stops a robot from loading; what is needed and missing is named with its line.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use roxmltree::{Document, Node};
 
 use super::UrdfError;
+use crate::kinematics::guard::MAX_NAMESPACES;
 
 /// A description without what planning does not use.
 pub(super) struct Needed {
@@ -51,6 +53,32 @@ const ATTRIBUTES: [(&str, &str, &str); 12] = [
     ("mimic", "joint", "`joint`"),
     ("limit", "velocity", "`velocity`"),
 ];
+
+/// The text, with a declaration for every prefix that has none: old descriptions call the elements of a simulator by such
+/// (`<sensor:camera>`), which planning does not use.
+pub(super) fn with_namespaces(text: &str) -> Cow<'_, str> {
+    let mut text = Cow::Borrowed(text);
+    for _ in 0..MAX_NAMESPACES {
+        let Err(roxmltree::Error::UnknownNamespace(prefix, _)) = Document::parse(&text) else { break };
+        let Some(at) = behind_root_name(&text) else { break };
+        text.to_mut().insert_str(at, &format!(" xmlns:{prefix}=\"{prefix}\""));
+    }
+    text
+}
+
+/// Where the name of the root element ends.
+fn behind_root_name(text: &str) -> Option<usize> {
+    let mut at = 0;
+    loop {
+        at += text.get(at..)?.find('<')?;
+        let rest = text.get(at..)?;
+        let other = [("<?", "?>"), ("<!--", "-->"), ("<!", ">")].into_iter().find(|(start, _)| rest.starts_with(start));
+        let Some((_, end)) = other else {
+            return rest.find(|c: char| c.is_whitespace() || c == '/' || c == '>').map(|length| at + length);
+        };
+        at += rest.find(end)?;
+    }
+}
 
 /// Blanks out what planning does not use and asks for what it needs.
 ///

@@ -259,3 +259,13 @@ fn damaged_texts_never_panic() {
     }
     assert!(accepted > 10, "{accepted} of 400");
 }
+
+#[test]
+fn a_prefix_without_declaration_stops_nothing() {
+    let text = "<?xml version='1.0'?><!-- <robot> --><robot name='r'>\n<link name='a'/>\n\
+                <gazebo><sensor:camera name='c'/><controller:x a:b='1'/></gazebo></robot>";
+    let robot = RobotDescription::from_text(text).unwrap();
+    assert_eq!(&*robot.links[0].name, "a");
+    let message = RobotDescription::from_text(&text.replace("name='a'", "")).unwrap_err().to_string();
+    assert!(message.contains("line 2") || message.contains(":2"), "{message}");
+}

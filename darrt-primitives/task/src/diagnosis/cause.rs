@@ -25,6 +25,8 @@ pub enum Occupant {
     Immovable,
     /// It is an object whose own goal is there.
     Goal,
+    /// It is a closed mesh around the place.
+    Enclosure,
 }
 
 impl std::fmt::Display for Occupant {
@@ -34,6 +36,7 @@ impl std::fmt::Display for Occupant {
             Self::Fixed => "",
             Self::Immovable => ", which never moves",
             Self::Goal => ", which has its goal there",
+            Self::Enclosure => ", which is closed around it",
         })
     }
 }
@@ -287,6 +290,30 @@ impl Cause {
             Self::NoRoom { .. } => true,
             _ => false,
         }
+    }
+
+    /// All bodies that it names, the object that it is about first, each once.
+    pub fn bodies(&self) -> Vec<String> {
+        let of = |blockers: &[Blocker]| blockers.iter().map(|blocker| blocker.body.clone()).collect::<Vec<_>>();
+        let others = match self {
+            Self::GoalOccupied { by, .. } => vec![by.clone()],
+            Self::NoHand { hands } => of(&hands.blockers),
+            Self::NoCommonGrasp { blockers, .. } | Self::NoRobotGoal { blockers, .. } => of(blockers),
+            Self::NoPush { pushes, edges } => {
+                let at_edges = edges.iter().flat_map(|edge| of(&edge.hands.blockers));
+                of(&pushes.blockers).into_iter().chain(at_edges).collect()
+            }
+            Self::CutOff { floor, .. } => of(&floor.walls),
+            Self::Behind { others, .. } => of(others),
+            _ => Vec::new(),
+        };
+        let mut all: Vec<String> = Vec::new();
+        for body in self.object().map(str::to_owned).into_iter().chain(others) {
+            if !all.contains(&body) {
+                all.push(body);
+            }
+        }
+        all
     }
 
     /// The object that it is about.

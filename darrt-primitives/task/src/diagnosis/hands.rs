@@ -150,7 +150,7 @@ impl<'a, M: Manipulator> Look<'a, M> {
         state: &TabletopState<M>,
         id: ObjectId,
         place: Place,
-        of_case: impl Fn(&Self, &Case<'_>, &mut Ends<'_, '_, M>) -> Result<[f64; 3], End>,
+        of_case: impl Fn(&Self, &Case<'_>, &mut Ends<'_, '_, M>) -> Result<Configuration<M::Joints>, End>,
         pose: impl Fn(&mut dyn Rng) -> Option<Isometry3<f64>>,
     ) -> Survey<'a> {
         let mut ends = BTreeMap::<Stage, (u64, BTreeMap<String, u64>)>::new();
@@ -168,8 +168,8 @@ impl<'a, M: Manipulator> Look<'a, M> {
                     let end = of_case(self, &case, &mut asked);
                     bases += asked.bases;
                     match end {
-                        Ok(base) => {
-                            good.push((case, base));
+                        Ok(q) => {
+                            good.push((case, q.base));
                             free += 1;
                             continue;
                         }
@@ -205,6 +205,21 @@ impl<'a, M: Manipulator> Look<'a, M> {
         let object = movable.map_or_else(String::new, |movable| movable.body.name.to_string());
         let hands = Hands { object, place, tried, good: good.len() as u64, ends, blockers, bases, beyond_m };
         Survey { hands, good, off_support_m }
+    }
+
+    /// The robot at `case` where it takes the object where it is in `state`; else the stage at which that ends, what is in the way
+    /// there, and how many bases were tried.
+    pub(super) fn takes(
+        &self,
+        state: &TabletopState<M>,
+        id: ObjectId,
+        case: &Case<'_>,
+    ) -> Result<Configuration<M::Joints>, (Stage, Option<String>, u64)> {
+        let Some(movable) = self.m.movable(id) else { return Err((Stage::Hold, None, 0)) };
+        let rng = &mut stream(0, 8, 0, Purpose::Attempt);
+        let mut ends = Ends { look: self, state, id, movable, rng, bases: 0 };
+        let found = ends.of_taking(case);
+        found.map_err(|end| (end.stage, end.body, ends.bases))
     }
 
     /// Does `case` set the object down at its goal, in some of `tries` draws of bases? The last end if not.
@@ -340,8 +355,8 @@ impl<M: Manipulator> Ends<'_, '_, M> {
         }
     }
 
-    /// Where the hand that takes the object ends; the base if it does not.
-    fn of_taking(&mut self, case: &Case<'_>) -> Result<[f64; 3], End> {
+    /// Where the hand that takes the object ends; the robot if it does not.
+    fn of_taking(&mut self, case: &Case<'_>) -> Result<Configuration<M::Joints>, End> {
         let (m, id, grasp) = (self.look.m, self.id, &case.grasp);
         self.check_overhang(case)?;
         let tool = grasp.world_from_tool(&case.pose);
@@ -372,8 +387,8 @@ impl<M: Manipulator> Ends<'_, '_, M> {
         })
     }
 
-    /// Where the hand that sets the object down ends; the base if it does not.
-    fn of_setting_down(&mut self, case: &Case<'_>) -> Result<[f64; 3], End> {
+    /// Where the hand that sets the object down ends; the robot if it does not.
+    fn of_setting_down(&mut self, case: &Case<'_>) -> Result<Configuration<M::Joints>, End> {
         let (m, id) = (self.look.m, self.id);
         let Some(surface) = m.surface_under(id, &case.pose, ON_SURFACE_M) else {
             return Err(End::at(Stage::Support));
@@ -416,8 +431,8 @@ impl<M: Manipulator> Ends<'_, '_, M> {
         })
     }
 
-    /// Where the hand that holds the object in the air ends; the base if it does not.
-    fn of_holding(&mut self, case: &Case<'_>) -> Result<[f64; 3], End> {
+    /// Where the hand that holds the object in the air ends; the robot if it does not.
+    fn of_holding(&mut self, case: &Case<'_>) -> Result<Configuration<M::Joints>, End> {
         let (m, id) = (self.look.m, self.id);
         let holding =
             self.held(case).and_then(|held| self.state.mode.engaged_with(id)?.attached(held, case.grasp.closed_gap_m));
@@ -465,7 +480,7 @@ impl<M: Manipulator> Ends<'_, '_, M> {
         &mut self,
         tool: &Isometry3<f64>,
         mut good: impl FnMut(&Self, &Configuration<M::Joints>) -> Result<(), End>,
-    ) -> Result<[f64; 3], End> {
+    ) -> Result<Configuration<M::Joints>, End> {
         let robot = self.look.m.manipulator();
         let mut farthest = End::at(Stage::Reach);
         let mut note = |end: End| {
@@ -487,7 +502,7 @@ impl<M: Manipulator> Ends<'_, '_, M> {
                     break;
                 }
                 match good(self, &q) {
-                    Ok(()) => return Ok(base),
+                    Ok(()) => return Ok(q),
                     Err(end) => note(end),
                 }
             }

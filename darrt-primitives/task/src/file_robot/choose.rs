@@ -9,7 +9,6 @@ use super::load;
 use super::shipped;
 use crate::problem_file::{PrimitiveName, ProblemFile};
 use crate::robot::{RobotError, TaskRobot as _};
-use crate::robot_file::BaseKind;
 
 /// The problem with the robot that a person names on a command line, one of [`shipped`] or a robot file, in the place of its own:
 /// the base where it was, the arm at home, through its own postures. Primitives that drive are taken from a robot that is
@@ -39,7 +38,7 @@ pub fn with_robot(
     let mut changes = Vec::new();
     problem.transit.postures = FileRobot::posture_names(&problem.robot)?;
     let (source, _) = load::source(&problem.robot)?;
-    if source.file.base.kind != BaseKind::Planar {
+    if !source.file.base.kind.drives() {
         let drives = |name: &PrimitiveName| contracts(name).is_some_and(|contract| contract.drives());
         let (taken, kept): (Vec<_>, Vec<_>) = problem.primitives.drain(..).partition(drives);
         problem.primitives = kept;

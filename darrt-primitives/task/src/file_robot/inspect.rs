@@ -4,7 +4,7 @@ use std::path::Path;
 
 use darrt_core::random::{Purpose, Stream, stream};
 use darrt_primitives::joints::Joints;
-use darrt_primitives::kinematics::KinematicTree;
+use darrt_primitives::kinematics::{KinematicTree, PairFate};
 use darrt_primitives::laws::{ManipulatorClaims, ReachClaims, check_manipulator, check_reaches};
 use darrt_primitives::manipulator::{Configuration, LinkGroup, Manipulator as _};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
@@ -12,6 +12,7 @@ use rand::RngExt as _;
 
 use super::apart::{distances, drawn_arm};
 use super::load::Loaded;
+use super::sampled::{self, JOINED, Pair, Pairs, Rule};
 use super::{FileRobot, shipped};
 use crate::problem_file::Limits;
 use crate::robot_file::{RobotFileError, Source};
@@ -23,10 +24,10 @@ const LAW_PAIRS: u64 = 6;
 const POSES: usize = 200;
 /// Share of them that should be found.
 const FOUND: f64 = 0.95;
-/// Configurations at which pairs of links are looked at.
-const SELF_SAMPLES: usize = 300;
-/// A pair that touches in so large a share of them stands in each other's shapes.
-const ALWAYS: f64 = 0.95;
+/// From this share on it is said that a pair touches which is not checked.
+const SELDOM: f64 = 1e-3;
+/// So many of a list are shown.
+const SHOWN: usize = 5;
 /// Heights at which a hand that points down is tried, metres: from 0 in steps, so many.
 const HEIGHTS: (f64, u32) = (0.1, 21);
 /// Distances from the base at which it is tried, metres.
@@ -46,6 +47,8 @@ pub struct Inspection {
     pub understood: Vec<String>,
     /// What is odd, a line each, with file and line.
     pub odd: Vec<String>,
+    /// Every pair of links with shapes, a line each: is it checked, and why.
+    pub pairs: Vec<String>,
     /// The names of its postures.
     pub postures: Vec<String>,
     /// Its base drives.
@@ -67,7 +70,9 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
     let robot = loaded.robot(Limits::Soft, [0.0; 3])?;
     let mut odd = Vec::new();
     postures(&loaded, &robot, &mut odd);
-    self_touching(&loaded, &robot, &mut odd);
+    let pairs = sampled::pairs(&loaded, &robot)?;
+    self_touching(&loaded, &pairs, &mut odd);
+    remarks(&loaded, &mut odd);
     joints(&loaded, &mut odd);
     let found = share_found(&robot);
     if found < FOUND {
@@ -77,7 +82,7 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
             100.0 * found
         ));
     }
-    if let Some(broken) = laws(&robot) {
+    if let Some(broken) = laws(&loaded.with_all_pairs().robot(Limits::Soft, [0.0; 3])?) {
         odd.push(format!("{}: a law of robots does not hold: {broken}", loaded.source.name));
     }
     let reach_down = reach_down(&robot);
@@ -90,7 +95,8 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
     }
     Ok(Inspection {
         name: loaded.source.file.name.clone(),
-        understood: understood(&loaded, &robot, reach_down),
+        understood: understood(&loaded, &robot, &pairs, reach_down),
+        pairs: pairs.all.iter().map(|pair| line(pair, pairs.samples)).collect(),
         odd,
         postures: robot.postures.keys().cloned().collect(),
         drives: !robot.ring.is_fixed(),
@@ -98,7 +104,11 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
     })
 }
 
-fn understood(loaded: &Loaded, robot: &FileRobot, reach_down: Option<([f64; 2], f64)>) -> Vec<String> {
+fn line(pair: &Pair, samples: usize) -> String {
+    format!("{} with {}: {}", pair.links[0], pair.links[1], pair.reason(samples))
+}
+
+fn understood(loaded: &Loaded, robot: &FileRobot, pairs: &Pairs, reach_down: Option<([f64; 2], f64)>) -> Vec<String> {
     let file = &loaded.source.file;
     let mut lines = vec![format!("base:     {:?}", file.base.kind).to_lowercase()];
     for ((name, limit), speed) in loaded.amended.arm_joints.iter().zip(&robot.limits).zip(&robot.speeds.joints) {
@@ -125,7 +135,21 @@ fn understood(loaded: &Loaded, robot: &FileRobot, reach_down: Option<([f64; 2], 
         1e3 * hand.tip_beyond_tool_m(0.0),
         2e3 * hand.tip_half_width_m()
     ));
-    lines.push(format!("pairs:    {} of links are kept apart", robot.self_pairs().len()));
+    if let Some(semantic) = &loaded.semantic {
+        lines.push(format!("srdf:     {}", semantic.path.display()));
+    }
+    let count = |is_it: &dyn Fn(&Pair) -> bool| pairs.all.iter().filter(|pair| is_it(pair)).count();
+    lines.push(format!(
+        "pairs:    {} of links are kept apart, {} of which touch in none of {} samples; not checked are {} by `ignore`, {} by the \
+         SRDF, {} of the hand, {} that are neighbours or that nothing moves",
+        robot.self_pairs().len(),
+        count(&|pair| pair.rule == Rule::Checked && pair.fate == PairFate::Never),
+        pairs.samples,
+        count(&|pair| pair.rule == Rule::File),
+        count(&|pair| matches!(pair.rule, Rule::Srdf(_))),
+        count(&|pair| pair.rule == Rule::Hand),
+        count(&|pair| pair.rule == Rule::Structure)
+    ));
     if let Some(([low, high], distance)) = reach_down {
         lines.push(format!(
             "reach:    pointing down {distance} m ahead, tool from {low:.1} to {high:.1} m above the floor"
@@ -201,28 +225,53 @@ fn pair_name(robot: &FileRobot, (a, b): (usize, usize)) -> String {
     format!("{} with {}", name(a), name(b))
 }
 
-/// Pairs that touch nearly always: their shapes reach into each other where they are joined, and nothing could ever be planned.
-fn self_touching(loaded: &Loaded, robot: &FileRobot, odd: &mut Vec<String>) {
-    let mut rng = rng(3);
-    let pairs = robot.self_pairs();
-    let mut touches = vec![0_usize; pairs.len()];
-    for _ in 0..SELF_SAMPLES {
-        let Some(q) = drawn(robot, &mut rng) else { return };
-        for (count, distance) in touches.iter_mut().zip(distances(robot, &q.arm, gap_m(robot), pairs)) {
-            *count += usize::from(distance <= 0.0);
+/// Pairs that are checked and touch nearly always, with which nothing could ever be planned, and pairs that are not checked and
+/// touch now and then, which no plan avoids.
+fn self_touching(loaded: &Loaded, pairs: &Pairs, odd: &mut Vec<String>) {
+    let name = &loaded.source.name;
+    for pair in pairs.all.iter().filter(|pair| pair.is_joined(pairs.samples)) {
+        odd.push(format!(
+            "{name}: {} with {} touch in {:.0} % of all configurations; if they are joined, add them to `ignore`",
+            pair.links[0],
+            pair.links[1],
+            100.0 * pair.share(pairs.samples)
+        ));
+    }
+    for (key, is_of) in
+        [("ignore", (|rule| *rule == Rule::File) as fn(&Rule) -> bool), ("srdf", |rule| matches!(rule, Rule::Srdf(_)))]
+    {
+        let seldom = |pair: &&Pair| is_of(&pair.rule) && (SELDOM..JOINED).contains(&pair.share(pairs.samples));
+        let named = pairs.all.iter().filter(seldom).map(|pair| {
+            format!("{} with {} ({:.0} %)", pair.links[0], pair.links[1], 100.0 * pair.share(pairs.samples))
+        });
+        let named: Vec<_> = named.collect();
+        if !named.is_empty() {
+            odd.push(format!(
+                "{name}:{}: `{key}` says not to check {}, of which the shapes touch in some configurations: {}",
+                loaded.source.line(key),
+                counted(named.len() as u64, "pair"),
+                shortened(&named)
+            ));
         }
     }
-    for (pair, count) in pairs.iter().zip(touches) {
-        let share = count as f64 / SELF_SAMPLES as f64;
-        if share >= ALWAYS {
-            let text = format!(
-                "{}: {} touch in {:.0} % of all configurations; if they are joined, add them to `ignore`",
-                loaded.source.name,
-                pair_name(robot, *pair),
-                100.0 * share
-            );
-            odd.push(text);
-        }
+}
+
+/// The first of a list, and how many there are besides.
+fn shortened(list: &[String]) -> String {
+    let shown = list.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
+    match list.len().saturating_sub(SHOWN) {
+        0 => shown,
+        more => format!("{shown}, and {more} more"),
+    }
+}
+
+/// What the SRDF says that was not understood.
+fn remarks(loaded: &Loaded, odd: &mut Vec<String>) {
+    let Some(semantic) = &loaded.semantic else { return };
+    let said = semantic.description.remarks.iter();
+    let said: Vec<_> = said.map(|remark| format!("line {}: {}", remark.line, remark.text)).collect();
+    if !said.is_empty() {
+        odd.push(format!("{}: {}", semantic.path.display(), shortened(&said)));
     }
 }
 

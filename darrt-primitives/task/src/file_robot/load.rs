@@ -1,11 +1,11 @@
 //! From a robot file to the robot.
 
-use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use darrt_geom::{Body, Shape};
 use darrt_primitives::joints::Joints;
 use darrt_primitives::kinematics::{
-    JointLimit, KinematicTree, KinematicsError, RobotDescription, folders_above, link_bodies, mesh_folders,
+    JointLimit, KinematicTree, KinematicsError, MeshPlaces, RobotDescription, link_bodies,
 };
 use darrt_primitives::manipulator::{JointVector as _, LinkGroup, RobotLink};
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -14,6 +14,7 @@ use super::bases::Ring;
 use super::chain::{ArmChain, Driver, Layout, Place};
 use super::inverse::Inverse;
 use super::opening::{Law, Opening};
+use super::semantic::Semantic;
 use super::travel::{Levers, corners};
 use super::{FileRobot, ParallelHand, Speeds, pairs, shipped};
 use crate::problem_file::Limits;
@@ -45,12 +46,18 @@ pub(super) fn source(settings: &RobotSettings) -> Result<(Source, Option<&'stati
     }
 }
 
+/// The tree of a robot and the shape of every link.
+type Solids = (KinematicTree, Vec<Option<Body>>);
+
 /// A robot file with its description, read and completed.
 #[derive(Debug, Clone)]
 pub(super) struct Loaded {
     pub(super) source: Source,
     pub(super) amended: Amended,
-    pub(super) mesh_folders: Vec<PathBuf>,
+    pub(super) meshes: MeshPlaces,
+    pub(super) semantic: Option<Semantic>,
+    /// Read when it is first asked for.
+    solids: OnceLock<Solids>,
 }
 
 impl Loaded {
@@ -72,19 +79,22 @@ impl Loaded {
         description.check_shapes(&source.file.shapeless).map_err(|error| {
             source.located(Fault::new("shapeless", format!("does not fit the description: {error}")))
         })?;
-        let folders = if urdf.is_some() { Vec::new() } else { folders_above(&path) };
-        let amended =
-            amend(&source.file, description, &mesh_folders(&folders)).map_err(|fault| source.located(fault))?;
-        Ok(Self { source, amended, mesh_folders: folders })
+        let semantic = Semantic::of(&source, &description)?;
+        let meshes = if urdf.is_some() { MeshPlaces::default() } else { source.meshes() };
+        let amended = amend(&source.file, description, &meshes.paths()).map_err(|fault| source.located(fault))?;
+        Ok(Self { source, amended, meshes, semantic, solids: OnceLock::new() })
     }
 
     /// Tree and shapes.
-    pub(super) fn solids(&self) -> Result<(KinematicTree, Vec<Option<Body>>), RobotFileError> {
+    pub(super) fn solids(&self) -> Result<&Solids, RobotFileError> {
+        if let Some(known) = self.solids.get() {
+            return Ok(known);
+        }
         let file = || self.source.name.clone();
         let wrong = |source| RobotFileError::Description { file: file(), source };
         let tree = KinematicTree::new(&self.amended.description).map_err(wrong)?;
-        let bodies = link_bodies(&self.amended.description, &tree, &mesh_folders(&self.mesh_folders)).map_err(wrong)?;
-        Ok((tree, bodies))
+        let bodies = link_bodies(&self.amended.description, &tree, &self.meshes.paths()).map_err(wrong)?;
+        Ok(self.solids.get_or_init(|| (tree, bodies)))
     }
 
     /// The tree's variables at rest, the hand open.
@@ -104,6 +114,13 @@ impl Loaded {
         Some((Layout { tree, drivers, arm_links }, finger))
     }
 
+    /// The same with no pair of links left out: what the laws of robots are about.
+    pub(super) fn with_all_pairs(&self) -> Self {
+        let mut all = Self { semantic: None, ..self.clone() };
+        all.source.file.ignore.clear();
+        all
+    }
+
     /// The robot, its base at `base`.
     pub(super) fn robot(&self, kind: Limits, base: [f64; 3]) -> Result<FileRobot, RobotFileError> {
         self.built(kind, base, true)
@@ -118,11 +135,11 @@ impl Loaded {
         let (tree, bodies) = self.solids()?;
         let at = |key: &str, why: &str| self.source.located(Fault::new(key, why));
         let no_layout = || at("arm", "does not fit the description");
-        let (layout, finger) = self.layout(&tree).ok_or_else(no_layout)?;
+        let (layout, finger) = self.layout(tree).ok_or_else(no_layout)?;
         let tool = tree.link_index(&self.amended.tool_link).ok_or_else(no_layout)?;
         let chain = layout.chain(tool).ok_or_else(no_layout)?;
         let unsolvable = |error: KinematicsError| at("arm.to", &format!("cannot be used: {error}"));
-        let inverse = Inverse::new(&tree, &self.amended, &layout, kind).map_err(unsolvable)?;
+        let inverse = Inverse::new(tree, &self.amended, &layout, kind).map_err(unsolvable)?;
         let limits = inverse.limits().to_vec();
         let mut links = Vec::new();
         let mut places = Vec::new();
@@ -137,7 +154,7 @@ impl Loaded {
         if is_placed {
             self.check_floor(&chain, &links, &places)?;
         }
-        let hand = self.hand(&layout, &bodies, tool, finger)?;
+        let hand = self.hand(&layout, bodies, tool, finger)?;
         let finger_limit = tree.variables().get(finger).map_or(JointLimit::UNLIMITED, |v| v.limit);
         let levers_at =
             |place: &Place, corners: &[Point3<f64>]| Levers::new(&chain, &limits, place, finger_limit, corners);
@@ -146,10 +163,10 @@ impl Loaded {
         let at_tool = Place { anchor: chain.joints.len(), steps: Vec::new(), offset: chain.wrist_from_tool };
         let tool_levers = levers_at(&at_tool, &[Point3::origin()]);
         let weights_m = tool_levers.arm.iter().map(|lever| (BENT * lever).max(LEAST_WEIGHT_M)).collect();
-        let self_pairs = pairs::pairs(&self.source, &tree, &numbers, &places, &links)?;
-        let drives = self.source.file.base.kind == BaseKind::Planar;
+        let self_pairs = pairs::pairs((&self.source, self.semantic.as_ref()), tree, &numbers, &places, &links)?;
+        let drives = self.source.file.base.kind.drives();
         let ring = Ring::new(&chain, &limits, (!drives).then_some(base));
-        let speeds = self.speeds(&tree, &layout)?;
+        let speeds = self.speeds(tree, &layout)?;
         let postures = self.postures(&limits)?;
         let file = &self.source.file;
         Ok(FileRobot {

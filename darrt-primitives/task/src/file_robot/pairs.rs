@@ -1,16 +1,19 @@
 //! Which links are checked against each other.
 
+use std::collections::BTreeSet;
+
 use darrt_primitives::kinematics::KinematicTree;
 use darrt_primitives::manipulator::{LinkGroup, RobotLink};
 
 use super::chain::Place;
+use super::semantic::Semantic;
 use crate::robot_file::error::Fault;
 use crate::robot_file::{RobotFileError, Source};
 
-/// All pairs that can move against each other, but for neighbours, parts of one hand, and those that the file says to ignore;
-/// indices into `links`. `numbers` are the links in the tree.
+/// All pairs that can move against each other, but for neighbours, parts of one hand, and those that the file or its SRDF says to
+/// ignore; indices into `links`. `numbers` are the links in the tree.
 pub(super) fn pairs(
-    source: &Source,
+    (source, semantic): (&Source, Option<&Semantic>),
     tree: &KinematicTree,
     numbers: &[usize],
     places: &[Place],
@@ -28,8 +31,9 @@ pub(super) fn pairs(
         let named = links.iter().enumerate().filter(|(_, l)| *l.body.name == *name || *l.body.name == *pad);
         named.map(|(index, _)| index).collect()
     };
-    let mut ignored = Vec::new();
-    for [a, b] in &source.file.ignore {
+    let mut ignored = BTreeSet::new();
+    let disabled = semantic.into_iter().flat_map(|semantic| &semantic.disabled).map(|disabled| &disabled.links);
+    for [a, b] in source.file.ignore.iter().chain(disabled) {
         let others = of_link(b);
         ignored.extend(of_link(a).into_iter().flat_map(|a| others.iter().map(move |b| (a.min(*b), a.max(*b)))));
     }

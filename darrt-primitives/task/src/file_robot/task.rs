@@ -75,8 +75,9 @@ impl TaskRobot for FileRobot {
             payload_kg: robot.payload_kg,
             push_force_n: robot.push_force_n,
             motion: motion_limits(&loaded, &robot),
-            is_bolted: file.base.kind != BaseKind::Planar,
-            mesh_folders: loaded.mesh_folders,
+            is_bolted: !file.base.kind.drives(),
+            drives_along_heading: file.base.kind == BaseKind::Differential,
+            meshes: loaded.meshes,
             description: Arc::new(loaded.amended.description),
         })
     }
@@ -98,7 +99,7 @@ impl TaskRobot for FileRobot {
     }
 
     fn drives(&self) -> bool {
-        self.base_kind == BaseKind::Planar
+        self.base_kind.drives()
     }
 }
 

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use darrt_geom::Body;
 use darrt_primitives::kinematics::limit::wrap_to_pi;
+use darrt_primitives::kinematics::link_bodies;
 use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
-use darrt_primitives::kinematics::{link_bodies, mesh_folders};
 use darrt_primitives::manipulator::world_from_base;
 use nalgebra::Isometry3;
 
@@ -49,7 +49,7 @@ impl Model {
     /// [`RobotError`] when its description has no tree, no such link or joint, or a shape that cannot be used.
     pub fn new(facts: &RobotFacts) -> Result<Self, RobotError> {
         let tree = KinematicTree::new(&facts.description)?;
-        let bodies = link_bodies(&facts.description, &tree, &mesh_folders(&facts.mesh_folders))?;
+        let bodies = link_bodies(&facts.description, &tree, &facts.meshes.paths())?;
         let missing = |what: &str, name: &str| RobotError::Key { key: "robot", why: format!("has no {what} `{name}`") };
         let variable = |name: &String| tree.variable_index(name).ok_or_else(|| missing("joint", name));
         let arm = facts.arm_joints.iter().map(variable).collect::<Result<Vec<_>, _>>()?;

@@ -15,7 +15,7 @@ pub use crate::text_file::MAX_NESTING;
 pub const MAX_BYTES: u64 = 256 * 1024 * 1024;
 
 impl PlanFile {
-    /// Reads the plan file at `path`.
+    /// Reads the plan file at `path`; `-` is the standard input.
     ///
     /// Relative paths of meshes and of a robot description are taken from the folder of the file.
     ///
@@ -24,6 +24,9 @@ impl PlanFile {
     /// has unknown, missing or doubled keys or values of the wrong kind; the error names the file, line, column and key.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, PlanFileError> {
         let path = path.as_ref();
+        if path == Path::new(text_file::STDIN) {
+            return Self::from_json(&text_file::read_stdin(MAX_BYTES)?, "standard input");
+        }
         let name = path.display().to_string();
         let mut plan = Self::from_json(&text_file::read(path, MAX_BYTES)?, &name)?;
         // Plans are written through links, so their files lie where the link leads.

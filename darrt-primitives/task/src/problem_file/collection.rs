@@ -5,6 +5,7 @@ use std::path::Path;
 use super::ProblemFile;
 use super::error::ProblemFileError;
 use super::suggest::{nearest, shown};
+use crate::text_file::STDIN;
 
 /// A problem that a program carries inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,11 +67,14 @@ impl Collection {
         ProblemFile::from_toml(text, &format!("built-in {name}"))
     }
 
-    /// Opens what a person names on a command line: a problem of the collection, else a file.
+    /// Opens what a person names on a command line: a problem of the collection, else a file; `-` is the standard input.
     ///
     /// # Errors
     /// [`ProblemFileError::UnknownProblem`] with the nearest name when there is neither; else as [`ProblemFile::read`].
     pub fn open(&self, name_or_path: &str) -> Result<ProblemFile, ProblemFileError> {
+        if name_or_path == STDIN {
+            return ProblemFile::from_stdin();
+        }
         if self.find(name_or_path).is_none() && Path::new(name_or_path).exists() {
             return ProblemFile::read(name_or_path);
         }

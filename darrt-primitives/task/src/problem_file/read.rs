@@ -39,6 +39,14 @@ impl ProblemFile {
         Ok(problem)
     }
 
+    /// Reads, completes and validates a problem on the standard input. Relative paths are taken from the working folder.
+    ///
+    /// # Errors
+    /// As [`ProblemFile::read`].
+    pub fn from_stdin() -> Result<Self, ProblemFileError> {
+        Self::from_toml(&text_file::read_stdin(MAX_BYTES)?, "standard input")
+    }
+
     /// Parses, completes and validates a problem in TOML; `source_name` is how errors call the text.
     ///
     /// Relative paths inside are left as they are, that is relative to the working folder.

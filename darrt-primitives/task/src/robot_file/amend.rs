@@ -45,6 +45,9 @@ pub fn amend(
     mut description: RobotDescription,
     mesh_path: &dyn Fn(&str) -> Option<PathBuf>,
 ) -> Result<Amended, Fault> {
+    if let Some(hand) = &file.hand {
+        hand.add(&mut description)?;
+    }
     let mut arm_joints = arm_joints(file, &description)?;
     let wrist = arm_joints.last().and_then(|name| joint_index(&description, name));
     let wrist = wrist.ok_or_else(|| Fault::new("arm.to", "is moved by no joint of the arm"))?;
@@ -185,12 +188,17 @@ fn free_name(description: &RobotDescription, wanted: &str) -> String {
     std::iter::once(wanted.to_owned()).chain(numbered).find(|name| !is_taken(name)).unwrap_or_default()
 }
 
-fn new_link(description: &mut RobotDescription, name: &str) -> usize {
+pub(super) fn new_link(description: &mut RobotDescription, name: &str) -> usize {
     description.links.push(LinkDescription { name: Arc::from(name), collision: Vec::new(), has_visual: false });
     description.links.len() - 1
 }
 
-fn new_joint(name: &str, kind: JointKind, [parent, child]: [usize; 2], at: Isometry3<f64>) -> JointDescription {
+pub(super) fn new_joint(
+    name: &str,
+    kind: JointKind,
+    [parent, child]: [usize; 2],
+    at: Isometry3<f64>,
+) -> JointDescription {
     JointDescription {
         name: Arc::from(name),
         kind,
@@ -221,11 +229,6 @@ pub(super) fn add_fixed(
 /// Puts the description on its base: below the root come a rail, of which this is the joint, and the place of the base.
 fn stand(file: &RobotFile, description: &mut RobotDescription) -> Result<Option<String>, Fault> {
     let base = &file.base;
-    if base.kind == BaseKind::Differential {
-        let why = "is \"differential\", which is not planned with yet: such a base turns and drives along its heading only, and ways \
-                   of the base here go in any direction; \"fixed\", \"planar\" and \"rail\" are";
-        return Err(Fault::new("base.kind", why));
-    }
     let mut root_from_old = pose(base.xyz, base.rpy);
     let mut joint = None;
     let is_rail = base.kind == BaseKind::Rail;

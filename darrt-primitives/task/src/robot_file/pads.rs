@@ -45,7 +45,14 @@ pub(super) fn box_in(
         link_index(description, "gripper.tips", &file.gripper.tips[0])?,
         link_index(description, "gripper.tips", &file.gripper.tips[1])?,
     ];
-    let (tree, bodies) = solids(description, mesh_path)?;
+    // The tips alone: other links may have large meshes.
+    let mut tips = description.clone();
+    for (index, link) in tips.links.iter_mut().enumerate() {
+        if !links.contains(&index) {
+            link.collision.clear();
+        }
+    }
+    let (tree, bodies) = solids(&tips, mesh_path)?;
     let cover = |name: &str| cover(file, &tree, &bodies, (tool_link, wrist_link), name);
     let mut covers = [cover(&file.gripper.tips[0])?, cover(&file.gripper.tips[1])?];
     check_symmetry(file, &covers)?;

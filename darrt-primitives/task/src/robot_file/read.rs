@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use darrt_primitives::kinematics::MeshPlaces;
+
 use super::error::Fault;
 use super::{RobotFile, RobotFileError, VERSION};
 use crate::problem_file::arrays::check_lengths;
@@ -76,9 +78,23 @@ impl Source {
         line(&self.text, key)
     }
 
+    /// A path of this file from the working folder.
+    pub fn path(&self, path: &Path) -> PathBuf {
+        self.folder.as_ref().map_or_else(|| path.to_path_buf(), |folder| folder.join(path))
+    }
+
     /// The path of the description from the working folder.
     pub fn urdf(&self) -> PathBuf {
-        self.folder.as_ref().map_or_else(|| self.file.urdf.clone(), |folder| folder.join(&self.file.urdf))
+        self.path(&self.file.urdf)
+    }
+
+    /// Where the meshes of the description are looked for.
+    pub fn meshes(&self) -> MeshPlaces {
+        let mut places = MeshPlaces::around(&self.urdf());
+        for (name, folder) in &self.file.packages {
+            places.add_package(name, self.path(folder));
+        }
+        places
     }
 
     fn check_numbers(&self) -> Result<(), Fault> {
@@ -116,6 +132,8 @@ impl Source {
             ("tool.xyz", file.tool.xyz),
             ("tool.rpy", file.tool.rpy),
             ("base.rail_axis", file.base.rail_axis.unwrap_or_default()),
+            ("hand.xyz", file.hand.as_ref().map(|hand| hand.xyz).unwrap_or_default()),
+            ("hand.rpy", file.hand.as_ref().map(|hand| hand.rpy).unwrap_or_default()),
         ];
         for (key, values) in poses {
             if let Some(value) = values.into_iter().find(|value| value.abs() > 1e2 || value.is_nan()) {

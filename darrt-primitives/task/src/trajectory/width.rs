@@ -1,7 +1,7 @@
 //! How wide a hand is open: the gap between its tips, from their shapes.
 
 use darrt_geom::Body;
-use darrt_primitives::kinematics::{KinematicTree, link_bodies, mesh_folders};
+use darrt_primitives::kinematics::{KinematicTree, link_bodies};
 use nalgebra::{Isometry3, Vector3};
 
 use crate::clock::ClockError;
@@ -24,8 +24,7 @@ impl HandWidth {
     pub fn new(facts: &RobotFacts) -> Result<Self, ClockError> {
         let refuse = |error: &dyn std::fmt::Display| ClockError::Robot(error.to_string());
         let tree = KinematicTree::new(&facts.description).map_err(|e| refuse(&e))?;
-        let mut bodies =
-            link_bodies(&facts.description, &tree, &mesh_folders(&facts.mesh_folders)).map_err(|e| refuse(&e))?;
+        let mut bodies = link_bodies(&facts.description, &tree, &facts.meshes.paths()).map_err(|e| refuse(&e))?;
         let link = |name: &str| tree.link_index(name).ok_or_else(|| refuse(&format!("it has no link `{name}`")));
         let tool = link(&facts.tool_link)?;
         let [left, right] = [link(&facts.tip_links[0])?, link(&facts.tip_links[1])?];

@@ -331,9 +331,11 @@ impl<'a> Judge<'a> {
         let segment = Segment::new(from, to, &self.robot);
         self.check_changes(trial, place, &segment)?;
         let slide = trial.act.pushed.and_then(|object| segment.slide(object));
-        let (parts, travel_m) = segment.parts(&trial.rates, self.options);
+        let (by_travel, part_m) = segment.parts(&trial.rates, self.options);
         let pushed = trial.act.pushed.and_then(|object| Some((object, self.world.movables.get(object)?.solid.reach())));
         let speeds = self.approach.speeds(&segment, &trial.extents, pushed);
+        let parts = self.stage.least_parts(&speeds, by_travel);
+        let travel_m = part_m * by_travel as f64 / parts as f64;
         self.stage.set_speeds(&speeds, parts, trial.skips());
         let arm_moves = from.joints != to.joints;
         let turn_rad = segment.joints.iter().map(|joint| joint.abs()).sum();

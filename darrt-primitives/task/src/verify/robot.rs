@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use darrt_primitives::kinematics::tree::{Drive, KinematicTree, LinkMotion};
-use darrt_primitives::kinematics::{JointLimit, link_bodies, mesh_folders};
+use darrt_primitives::kinematics::{JointLimit, link_bodies};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use super::refusal::{Refusal, RefusalKind};
@@ -57,6 +57,8 @@ pub(super) struct Robot {
     pub(super) gap_rate: f64,
     /// The base never moves.
     pub(super) is_bolted: bool,
+    /// It moves along its heading only, and turns on the spot.
+    pub(super) drives_along_heading: bool,
     /// Links that move with the manipulating arm or its fingers, in ascending order.
     arm_links: Vec<usize>,
     pub(super) strength: Strength,
@@ -82,7 +84,7 @@ impl Robot {
         };
         let description = &*facts.description;
         let tree = KinematicTree::new(description).map_err(|e| refuse(&e))?;
-        let bodies = link_bodies(description, &tree, &mesh_folders(&facts.mesh_folders)).map_err(|e| refuse(&e))?;
+        let bodies = link_bodies(description, &tree, &facts.meshes.paths()).map_err(|e| refuse(&e))?;
         let mut solids = Vec::new();
         for (link, body) in bodies.iter().enumerate() {
             for part in body.iter().flat_map(|body| &body.parts) {
@@ -136,6 +138,7 @@ impl Robot {
             finger_joint,
             gap_rate,
             is_bolted: facts.is_bolted,
+            drives_along_heading: facts.drives_along_heading,
             arm_links,
             strength,
         })

@@ -1,5 +1,6 @@
 //! All solids at their places, and which pairs may not touch.
 
+mod enough;
 mod plain;
 
 use std::collections::BTreeMap;
@@ -145,6 +146,8 @@ pub(super) struct Stage {
     pub(super) smallest_of_step: [Option<SmallestClearance>; 5],
     /// By kind of margin: what is nearer is measured, metres.
     nearest_m: [f64; 5],
+    /// Some pairs may be nearer than their margin.
+    has_exceptions: bool,
     /// The first pair of this step that is nearer than its margin. It does not end the step: two that come too near may go on
     /// to collide, which is the worse fault.
     pub(super) too_near: Option<TooNear>,
@@ -207,6 +210,7 @@ impl Stage {
             smallest: Default::default(),
             smallest_of_step: Default::default(),
             nearest_m: [f64::INFINITY; 5],
+            has_exceptions: false,
             too_near: None,
         }
     }
@@ -537,6 +541,7 @@ impl Stage {
         if answer.intersects || answer.distance >= least_m + NEARLY_M {
             return None;
         }
+        self.has_exceptions = true;
         let pair = &mut self.pairs[index];
         pair.may_m = pair.may_m.min((answer.distance - STRAY_M).max(0.0));
         (answer.distance < least_m - margins::ROUNDING_M).then_some(answer.distance)

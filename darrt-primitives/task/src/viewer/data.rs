@@ -6,6 +6,9 @@
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
+use super::search::SearchData;
+use super::why::WhyData;
+
 /// The only accepted value of the key `format`.
 pub const FORMAT: &str = "darrt-viewer";
 /// The version of the format.
@@ -40,6 +43,12 @@ pub struct ViewerData {
     pub start: StartData,
     /// What happens, in order; none for a problem without a plan.
     pub steps: Vec<StepData>,
+    /// Why there is no plan; then the steps are the beginning of one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<WhyData>,
+    /// How the search went, if it was recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub search: Option<SearchData>,
 }
 
 /// A tree of links.
@@ -312,7 +321,7 @@ pub struct ClearanceData {
 }
 
 /// A number to a hundredth of a millimetre, or of a milliradian.
-pub(super) fn rounded(value: f64) -> f64 {
+pub(crate) fn rounded(value: f64) -> f64 {
     to(value, 1e5)
 }
 
@@ -322,7 +331,7 @@ pub(super) fn to(value: f64, steps: f64) -> f64 {
 }
 
 /// A pose as data.
-pub(super) fn pose(pose: &Isometry3<f64>) -> PoseData {
+pub(crate) fn pose(pose: &Isometry3<f64>) -> PoseData {
     let [x, y, z] = pose.translation.vector.into();
     let q = pose.rotation.quaternion();
     let [x, y, z] = [x, y, z].map(rounded);

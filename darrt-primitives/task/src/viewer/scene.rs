@@ -1,11 +1,9 @@
 //! The robot, the room and the objects as data.
 
-use std::path::PathBuf;
-
 use darrt_geom::Body;
 use darrt_primitives::kinematics::tree::{Drive, LinkMotion};
 use darrt_primitives::kinematics::urdf::{JointDescription, JointKind};
-use darrt_primitives::kinematics::{KinematicTree, RobotDescription, link_bodies, mesh_folders};
+use darrt_primitives::kinematics::{KinematicTree, MeshPlaces, RobotDescription, link_bodies};
 
 use super::ViewerError;
 use super::data::{
@@ -32,13 +30,13 @@ pub struct RobotModel {
 }
 
 impl RobotModel {
-    /// The robot of a description whose meshes lie in `folders`; what it holds is rigid to the link `tool`.
+    /// The robot of a description whose meshes lie at `meshes`; what it holds is rigid to the link `tool`.
     ///
     /// # Errors
     /// When the description is no tree, geometry cannot be used, or there is no such link.
-    pub fn new(description: &RobotDescription, folders: &[PathBuf], tool: &str) -> Result<Self, ViewerError> {
+    pub fn new(description: &RobotDescription, meshes: &MeshPlaces, tool: &str) -> Result<Self, ViewerError> {
         let tree = KinematicTree::new(description)?;
-        let bodies = link_bodies(description, &tree, &mesh_folders(folders))?;
+        let bodies = link_bodies(description, &tree, &meshes.paths())?;
         let tool = tree.link_index(tool).ok_or_else(|| ViewerError::NoLink { name: tool.to_owned() })?;
         let is_sliding = |joint: &JointDescription| joint.kind == JointKind::Sliding;
         let slides = tree.variables().iter().map(|variable| {
@@ -60,7 +58,7 @@ impl RobotModel {
     /// # Errors
     /// As [`RobotModel::new`].
     pub fn of(facts: &RobotFacts) -> Result<Self, ViewerError> {
-        Self::new(&facts.description, &facts.mesh_folders, &facts.tool_link)
+        Self::new(&facts.description, &facts.meshes, &facts.tool_link)
     }
 
     /// The joints that a waypoint lists.

@@ -6,6 +6,8 @@ use std::fmt::Write as _;
 use darrt_core::observe::accounts::Bucket;
 
 use super::{Row, escaped};
+use crate::bench::collection::Collection;
+use crate::bench::kept::encoded;
 use crate::bench::record::Record;
 use crate::bench::restarts;
 use crate::bench::statistics::Summary;
@@ -57,6 +59,25 @@ pub(super) fn times(summaries: &[Summary]) -> String {
 fn cell(quantile: Quantile, words: &str) -> String {
     let class = if quantile.value().is_some() { "" } else { " class=\"open\"" };
     format!("<td{class}>{}</td>", escaped(words))
+}
+
+/// Links to the pages of the plans that were kept, by problem and variant; `None` if there are none.
+pub(super) fn plans(all: &Collection, summaries: &[Summary], folder: &str) -> Option<String> {
+    let mut text = String::new();
+    for summary in summaries {
+        let runs = all.group(&summary.problem, &summary.variant);
+        let link = |run: &&Record| {
+            let page = encoded(run.page.as_ref()?);
+            let steps = run.plan.as_ref().map_or_else(String::new, |plan| format!(" ({} steps)", plan.steps));
+            Some(format!("<a href=\"{folder}{page}\">seed {}{steps}</a>", run.seed))
+        };
+        let links: Vec<_> = runs.iter().filter_map(link).collect();
+        if !links.is_empty() {
+            let name = escaped(&format!("{}, {}", summary.problem, summary.variant));
+            let _ = writeln!(text, "<p><b>{name}</b>: {}</p>", links.join(", "));
+        }
+    }
+    (!text.is_empty()).then_some(text)
 }
 
 /// When to start over, one row per group of runs.

@@ -12,10 +12,10 @@ use nalgebra::Isometry3;
 use serde_json::{Value, json};
 
 /// What is written on which topic, with the name of its schema.
-const TOPICS: [(&str, &str); 3] =
+pub(in crate::command) const TOPICS: [(&str, &str); 3] =
     [("/joint_states", "sensor_msgs/JointState"), ("/tf", "foxglove.FrameTransforms"), ("/events", "darrt.Event")];
 
-type Writer = mcap::Writer<Cursor<Vec<u8>>>;
+pub(in crate::command) type Writer = mcap::Writer<Cursor<Vec<u8>>>;
 
 /// The bytes of the recording, or why there are none.
 pub(super) fn file(plan: &PlanFile, sampled: &Sampled) -> Result<Vec<u8>, String> {
@@ -59,7 +59,13 @@ fn write(plan: &PlanFile, sampled: &Sampled) -> mcap::McapResult<Vec<u8>> {
     Ok(writer.into_inner().into_inner())
 }
 
-fn put(writer: &mut Writer, channel_id: u16, sequence: u32, t_s: f64, value: &Value) -> mcap::McapResult<()> {
+pub(in crate::command) fn put(
+    writer: &mut Writer,
+    channel_id: u16,
+    sequence: u32,
+    t_s: f64,
+    value: &Value,
+) -> mcap::McapResult<()> {
     let time = Seconds::from_s(t_s);
     let log_time = u64::from(time.sec) * 1_000_000_000 + u64::from(time.nanosec);
     let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
@@ -67,7 +73,7 @@ fn put(writer: &mut Writer, channel_id: u16, sequence: u32, t_s: f64, value: &Va
 }
 
 /// The stamp of a message, as the schemas of Foxglove have it.
-fn stamp(t_s: f64) -> Value {
+pub(in crate::command) fn stamp(t_s: f64) -> Value {
     let time = Seconds::from_s(t_s);
     json!({ "sec": time.sec, "nsec": time.nanosec })
 }
@@ -110,7 +116,7 @@ fn frames(sampled: &Sampled, t_s: f64, moment: &Moment, told: &mut Told) -> Valu
 }
 
 /// The JSON schemas of the messages.
-fn schema(name: &str) -> Value {
+pub(in crate::command) fn schema(name: &str) -> Value {
     let number = json!({ "type": "number" });
     let numbers = json!({ "type": "array", "items": { "type": "number" } });
     let time = json!({ "type": "object", "title": "time",

@@ -1,17 +1,21 @@
 //! Where the hand is, which joint opens it, and where its tool frame goes.
 
-use std::path::PathBuf;
-
 use darrt_geom::Body;
 use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
-use darrt_primitives::kinematics::{RobotDescription, link_bodies};
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
+use crate::robot_file::BuiltHand;
+
 /// How far the tool frame lies before the end of the tips, metres.
-const BEHIND_TIPS_M: f64 = 0.02;
+pub(super) const BEHIND_TIPS_M: f64 = 0.02;
 /// Longest pad that is guessed, metres, and its share of the finger.
 const PAD_M: f64 = 0.03;
 const PAD_SHARE: f64 = 0.5;
+/// The pads are so far from the origin of a hand that lies behind them, metres.
+const FINGER_M: f64 = 0.02;
+/// How far pads may turn, radians, and how far ends are the same, metres.
+const PARALLEL_RAD: f64 = 1e-6;
+const SAME_M: f64 = 1e-6;
 /// A finger has at most so many joints.
 const MOST_FINGER_JOINTS: usize = 3;
 
@@ -19,6 +23,8 @@ const MOST_FINGER_JOINTS: usize = 3;
 #[derive(Debug, Clone)]
 pub(super) struct HandGuess {
     pub(super) link: String,
+    /// The link of the description that carries it.
+    pub(super) on: String,
     pub(super) xyz: [f64; 3],
     pub(super) rpy: [f64; 3],
     pub(super) joint: String,
@@ -26,6 +32,8 @@ pub(super) struct HandGuess {
     /// Joints that must follow, with their factor.
     pub(super) follow: Vec<(String, f64)>,
     pub(super) pad_length_m: f64,
+    /// What is built because the description has no hand.
+    pub(super) built: Option<BuiltHand>,
 }
 
 /// One finger: the links below one child of the hand.
@@ -35,41 +43,35 @@ struct Finger {
     variables: Vec<usize>,
 }
 
-/// The hand farthest out, or why there is none.
-pub(super) fn guess(
-    description: &RobotDescription,
-    mesh_path: &dyn Fn(&str) -> Option<PathBuf>,
-) -> Result<HandGuess, String> {
-    let tree = KinematicTree::new(description).map_err(|error| error.to_string())?;
-    let bodies = link_bodies(description, &tree, mesh_path).map_err(|error| error.to_string())?;
-    let none = "has no link with two fingers at the end of an arm: two parts with a shape, each moved by a joint of its own; \
-                write the robot file by hand";
+/// The hand farthest out; `None` if there is nothing like one.
+pub(super) fn guess(tree: &KinematicTree, bodies: &[Option<Body>]) -> Option<HandGuess> {
     let candidates = (0..tree.link_count()).filter_map(|link| {
-        let mut fingers: Vec<_> = children(&tree, link).filter_map(|child| finger(&tree, &bodies, child)).collect();
-        (fingers.len() >= 2).then(|| {
-            fingers.truncate(2);
-            (joints_above(&tree, link), link, fingers)
-        })
+        let fingers: Vec<_> = children(tree, link).filter_map(|child| finger(tree, bodies, child)).collect();
+        (fingers.len() >= 2).then(|| (joints_above(tree, link), link, fingers))
     });
     // Of two arms the first.
     let best = candidates.reduce(|best, next| if next.0 > best.0 { next } else { best });
-    let (_, link, fingers) = best.filter(|(above, ..)| *above > 0).ok_or_else(|| none.to_owned())?;
-    let [Some(first), Some(second)] = [fingers.first(), fingers.get(1)] else { return Err(none.to_owned()) };
-    describe(&tree, &bodies, link, [first, second]).ok_or_else(|| none.to_owned())
+    let (_, link, fingers) = best.filter(|(above, ..)| *above > 0)?;
+    // Of those whose pads stay parallel, the two that reach farthest out; a hand may have links beside the fingers that guide them.
+    let pairs = fingers.iter().enumerate().flat_map(|(at, a)| fingers.iter().skip(at + 1).map(move |b| [a, b]));
+    let found: Vec<_> = pairs.filter_map(|pair| describe(tree, bodies, link, pair)).collect();
+    let parallel = found.iter().filter(|(_, is_parallel, _)| *is_parallel);
+    let best = parallel.reduce(|best, next| if next.2 > best.2 + SAME_M { next } else { best });
+    best.or(found.first()).map(|(hand, ..)| hand.clone())
 }
 
-fn children(tree: &KinematicTree, link: usize) -> impl Iterator<Item = usize> + '_ {
+pub(super) fn children(tree: &KinematicTree, link: usize) -> impl Iterator<Item = usize> + '_ {
     (1..tree.link_count()).filter(move |child| tree.parent(*child) == Some(link))
 }
 
-fn variable_of(tree: &KinematicTree, link: usize) -> Option<usize> {
+pub(super) fn variable_of(tree: &KinematicTree, link: usize) -> Option<usize> {
     match tree.motion(link)? {
         LinkMotion::Turning { drive, .. } | LinkMotion::Sliding { drive, .. } => Some(drive.variable),
         LinkMotion::Fixed => None,
     }
 }
 
-fn joints_above(tree: &KinematicTree, mut link: usize) -> usize {
+pub(super) fn joints_above(tree: &KinematicTree, mut link: usize) -> usize {
     let mut count = 0;
     loop {
         count += usize::from(variable_of(tree, link).is_some());
@@ -112,7 +114,13 @@ fn finger(tree: &KinematicTree, bodies: &[Option<Body>], top: usize) -> Option<F
     is_bounded.then_some(Finger { tip, variables })
 }
 
-fn describe(tree: &KinematicTree, bodies: &[Option<Body>], hand: usize, fingers: [&Finger; 2]) -> Option<HandGuess> {
+/// The hand with these fingers, do its pads stay parallel while it opens, and how far they reach out of it, metres.
+fn describe(
+    tree: &KinematicTree,
+    bodies: &[Option<Body>],
+    hand: usize,
+    fingers: [&Finger; 2],
+) -> Option<(HandGuess, bool, f64)> {
     let name = |link: usize| tree.link_names().get(link).map(ToString::to_string);
     let joint_name = |variable: usize| tree.variables().get(variable).map(|v| v.name.to_string());
     let driver = *fingers[0].variables.first()?;
@@ -139,7 +147,18 @@ fn describe(tree: &KinematicTree, bodies: &[Option<Body>], hand: usize, fingers:
     let y = apart.map(|x| if x.abs() == apart.amax() { x.signum() } else { 0.0 });
     // They reach out along that of the others along which they are farthest from the hand's own origin.
     let middle = (centre(a) + centre(b)) / 2.0;
-    let out = middle - y * middle.dot(&y);
+    // Where that is between the pads, from where the last joint before it is.
+    let middle_from_origin = middle - y * middle.dot(&y);
+    let out = if middle_from_origin.amax() >= FINGER_M {
+        middle_from_origin
+    } else {
+        let mut wrist = hand;
+        while variable_of(tree, wrist).is_none() {
+            wrist = tree.parent(wrist)?;
+        }
+        let from_wrist = middle - (hand_from_world * poses.get(wrist)?).translation.vector;
+        from_wrist - y * from_wrist.dot(&y)
+    };
     let x = out.map(|v| if v.abs() == out.amax() && v != 0.0 { v.signum() } else { 0.0 });
     if (x.norm() - 1.0).abs() > 1e-9 || (y.norm() - 1.0).abs() > 1e-9 {
         return None;
@@ -157,15 +176,34 @@ fn describe(tree: &KinematicTree, bodies: &[Option<Body>], hand: usize, fingers:
     let follow = others
         .iter()
         .filter_map(|variable| Some((joint_name(*variable)?, follow_factor(limit(driver)?, limit(*variable)?))));
-    Some(HandGuess {
+    let follow: Vec<_> = follow.collect();
+    let turned = |upper: bool| {
+        let end = |variable: usize| limit(variable).map(|limit| if upper { limit.upper } else { limit.lower });
+        let mut values = tree.neutral();
+        *values.get_mut(driver)? = end(driver)?;
+        for (variable, (_, factor)) in others.iter().zip(&follow) {
+            // A follower that goes the other way is at its other end.
+            *values.get_mut(*variable)? = factor * end(driver)?;
+        }
+        let mut poses = vec![Isometry3::identity(); tree.link_count()];
+        tree.forward(&values, &Isometry3::identity(), &mut poses).ok()?;
+        let hand = poses.get(hand)?.inverse();
+        Some([(hand * poses.get(tips[0])?).rotation, (hand * poses.get(tips[1])?).rotation])
+    };
+    let (closed, open) = (turned(false)?, turned(true)?);
+    let is_parallel = closed.iter().zip(&open).all(|(closed, open)| closed.angle_to(open) <= PARALLEL_RAD);
+    let hand = HandGuess {
         link: name(hand)?,
+        on: name(hand)?,
         xyz: origin.into(),
         rpy: [roll, pitch, yaw],
         joint: joint_name(driver)?,
         tips: [name(tips[0])?, name(tips[1])?],
-        follow: follow.collect(),
+        follow,
         pad_length_m: (PAD_SHARE * (end - start)).min(PAD_M),
-    })
+        built: None,
+    };
+    Some((hand, is_parallel, end))
 }
 
 /// A joint with the mirrored range moves the other way.

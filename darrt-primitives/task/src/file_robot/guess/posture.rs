@@ -5,42 +5,39 @@ use darrt_primitives::manipulator::Manipulator as _;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::RngExt as _;
 
-use super::super::apart::{distances, drawn_arm};
+use super::super::apart::distances;
 use super::super::load::Loaded;
+use super::super::sampled;
 use crate::problem_file::Limits;
 use crate::robot_file::RobotFileError;
 
-/// Configurations that are looked at for pairs that touch.
-const SAMPLES: usize = 300;
-/// A pair that touches in so large a share of them is joined.
-const JOINED: f64 = 0.9;
 /// Places of the hand that are tried for a posture.
 const TRIES: usize = 400;
 /// How far links keep from each other in it, metres.
 const APART_M: f64 = 0.01;
 
-/// A posture in which the hand points down in front of the robot and nothing touches, with the pairs that touch anyway.
-type Found = (Option<Vec<f64>>, Vec<[String; 2]>);
+/// A posture in which the hand points down in front of the robot and nothing touches, with the pairs that touch anyway and in
+/// which share of all configurations.
+pub(super) type Found = (Option<Vec<f64>>, Vec<([String; 2], String)>);
 
 pub(super) fn search(loaded: &Loaded) -> Result<Found, RobotFileError> {
     let robot = loaded.robot(Limits::Soft, [0.0; 3])?;
     let mut rng = stream(0, 0, 0, Purpose::Extend);
     let gap_m = robot.hand().max_gap_m();
-    let pairs = robot.self_pairs().to_vec();
-    let mut touches = vec![0_usize; pairs.len()];
-    for _ in 0..SAMPLES {
-        let Some(arm) = drawn_arm(&robot, &mut rng) else { break };
-        for (count, distance) in touches.iter_mut().zip(distances(&robot, &arm, gap_m, &pairs)) {
-            *count += usize::from(distance <= 0.0);
-        }
-    }
-    let is_joined = |count: &usize| *count as f64 >= JOINED * SAMPLES as f64;
-    let name = |link: usize| robot.links().get(link).map_or_else(String::new, |link| link.body.name.to_string());
-    let joined = pairs.iter().zip(&touches).filter(|(_, count)| is_joined(count));
+    let pairs = sampled::pairs(loaded, &robot)?;
+    let ignore = pairs.all.iter().filter(|pair| pair.is_joined(pairs.samples)).map(|pair| {
+        let why = format!("{:.0} %", 100.0 * pair.share(pairs.samples));
+        (pair.links.clone(), why)
+    });
+    let ignore: Vec<_> = ignore.collect();
     // The file names links, not the pads that take their place.
-    let ignore = joined.map(|((a, b), _)| [name(*a), name(*b)].map(|name| name.trim_end_matches("_pad").to_owned()));
-    let kept: Vec<_> =
-        pairs.iter().zip(&touches).filter(|(_, count)| !is_joined(count)).map(|(pair, _)| *pair).collect();
+    let name = |link: usize| robot.links().get(link).map_or("", |link| link.body.name.trim_end_matches("_pad"));
+    let is_joined = |a: usize, b: usize| {
+        ignore
+            .iter()
+            .any(|([first, second], _)| [name(a), name(b)] == [first, second] || [name(b), name(a)] == [first, second])
+    };
+    let kept: Vec<_> = robot.self_pairs().iter().copied().filter(|(a, b)| !is_joined(*a, *b)).collect();
     let mut best: Option<(f64, Vec<f64>)> = None;
     for _ in 0..TRIES {
         let (ahead, side) = (rng.random_range(0.2..0.7), rng.random_range(-0.2..0.2));
@@ -69,5 +66,5 @@ pub(super) fn search(loaded: &Loaded) -> Result<Found, RobotFileError> {
             best = Some((room, arm.as_ref().to_vec()));
         }
     }
-    Ok((best.map(|(_, values)| values), ignore.collect()))
+    Ok((best.map(|(_, values)| values), ignore))
 }

@@ -41,6 +41,9 @@ fn check_robot(problem: &ProblemFile, goal: &RobotGoal) -> Result<(), Located> {
         angle("goal.robot.base[2]", yaw)?;
         within("goal.robot.base[2]", yaw, -PI, PI)?;
     }
+    for (index, turn) in goal.tool.iter().flat_map(|tool| tool.rpy).enumerate() {
+        angle(&format!("goal.robot.tool.rpy[{index}]"), turn)?;
+    }
     Ok(())
 }
 

@@ -11,6 +11,9 @@ use crate::problem_file::{Bounds, Obstacle, ProblemFile, ShapeSpec, Surface};
 /// How far the norm of a quaternion may be from 1.
 const QUATERNION_TOLERANCE: f64 = 1e-3;
 
+/// Most obstacles.
+const MOST_OBSTACLES: usize = 10_000;
+
 /// Most corners of a polygon.
 const MOST_CORNERS: usize = darrt_geom::support::MAXIMUM_VERTICES;
 
@@ -29,6 +32,7 @@ pub(super) fn check(problem: &ProblemFile) -> Result<(), Located> {
         ordered(&format!("bounds.{name}"), range)?;
     }
     check_robot(&problem.robot, &problem.bounds)?;
+    length("obstacle", problem.obstacles.len(), 0, MOST_OBSTACLES)?;
     for (index, obstacle) in problem.obstacles.iter().enumerate() {
         check_obstacle(problem, obstacle, &format!("obstacle[{index}]"))?;
     }

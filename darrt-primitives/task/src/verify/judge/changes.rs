@@ -1,5 +1,7 @@
 //! What differs between two waypoints, and whether the step may change it.
 
+use std::f64::consts::TAU;
+
 use darrt_primitives::contract::HandUse;
 use nalgebra::Vector3;
 
@@ -8,6 +10,8 @@ use crate::verify::motion::{Changes, Segment};
 use crate::verify::refusal::{Refusal, RefusalKind};
 use crate::verify::robot::Role;
 
+/// How far a base that drives along its heading may be off it, metres and radians.
+const ALONG: f64 = 1e-6;
 /// How far the hand opens at least to let go, metres.
 const LET_GO_M: f64 = 8e-4;
 
@@ -26,6 +30,12 @@ impl<'a> Judge<'a> {
         }
         if changes.base && self.robot.is_bolted {
             return stray("the base moves, which is bolted down".to_owned());
+        }
+        if changes.base
+            && self.robot.drives_along_heading
+            && let Some(how) = off_heading(&segment.from.base, &segment.to.base, self.options.rounding.max(ALONG))
+        {
+            return stray(format!("the base drives along its heading only, and {how}"));
         }
         if changes.base && !site.contract.drives() {
             return stray(format!("the base moves in {}", site.primitive));
@@ -60,6 +70,22 @@ impl<'a> Judge<'a> {
         }
         Ok(())
     }
+}
+
+/// How a straight move of the base is none along its heading, nor a turn on the spot; `None` if it is one.
+fn off_heading(from: &[f64; 3], to: &[f64; 3], slack: f64) -> Option<String> {
+    let [x, y] = [to[0] - from[0], to[1] - from[1]];
+    if x.hypot(y) <= slack {
+        return None;
+    }
+    let turned = (to[2] - from[2]).rem_euclid(TAU);
+    let turned = turned.min(TAU - turned);
+    if turned > slack {
+        return Some(format!("it turns by {:.3} degrees while it drives {:.3} m", turned.to_degrees(), x.hypot(y)));
+    }
+    let (sin, cos) = from[2].sin_cos();
+    let sideways = (cos * y - sin * x).abs();
+    (sideways > slack).then(|| format!("it moves {:.3} mm sideways", 1e3 * sideways))
 }
 
 /// The hand opens and closes alone, at the ends of steps, and only where it must while something is held.
