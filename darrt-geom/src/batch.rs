@@ -54,13 +54,6 @@ impl Block {
         ball: (Vector3::new(NOWHERE, NOWHERE, NOWHERE), 0.0),
     };
 
-    /// A ball around the boxes.
-    fn ball_around(boxes: &[PlacedBox]) -> Ball {
-        let centre = boxes.iter().map(|placed| placed.centre).sum::<Vector3<f64>>() / boxes.len() as f64;
-        let reach = |placed: &PlacedBox| (placed.centre - centre).norm() + placed.half.norm();
-        (centre, boxes.iter().map(reach).fold(0.0, f64::max) * (1.0 + 1e-12))
-    }
-
     fn put(&mut self, lane: usize, placed: &PlacedBox) {
         for i in 0..3 {
             self.centre[i][lane] = placed.centre[i];
@@ -135,8 +128,8 @@ fn halve(order: &mut [usize], boxes: &[PlacedBox]) {
     halve(second, boxes);
 }
 
-/// A ball around some of the balls.
-fn ball_around_balls(balls: &[Ball]) -> Ball {
+/// A ball around the balls.
+fn ball_around(balls: &[Ball]) -> Ball {
     let centre = balls.iter().map(|(centre, _)| centre).sum::<Vector3<f64>>() / balls.len() as f64;
     let reach = |(other, radius): &Ball| (other - centre).norm() + radius;
     (centre, balls.iter().map(reach).fold(0.0, f64::max) * (1.0 + 1e-12))
@@ -158,39 +151,31 @@ impl WithSimd for Near<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { levels, blocks, point, reach, out } = self;
-        match levels {
-            None => blocks.iter().enumerate().for_each(|(number, block)| look(block, number, point, reach, out)),
-            Some([groups, wholes]) => visit(wholes, 0..wholes.len(), point, reach, |whole| {
-                let of_whole = whole * FAN..((whole + 1) * FAN).min(groups.len());
-                visit(groups, of_whole, point, reach, |group| {
-                    let from = group * FAN;
-                    for (number, block) in (from..).zip(blocks.iter().skip(from).take(FAN)) {
-                        look(block, number, point, reach, out);
-                    }
-                });
-            }),
+        let Some([groups, wholes]) = levels else {
+            for (number, block) in blocks.iter().enumerate() {
+                look(block, number, point, reach, out);
+            }
+            return;
+        };
+        for (whole, _) in wholes.iter().enumerate().filter(|(_, ball)| reaches(ball, point, reach)) {
+            let of_whole = (whole * FAN..).zip(groups.iter().skip(whole * FAN).take(FAN));
+            for (group, _) in of_whole.filter(|(_, ball)| reaches(ball, point, reach)) {
+                for (number, block) in (group * FAN..).zip(blocks.iter().skip(group * FAN).take(FAN)) {
+                    look(block, number, point, reach, out);
+                }
+            }
         }
     }
 }
 
-/// Visits those of the balls that reach as near.
+/// Is something of the ball as near to the point as `reach`?
 #[expect(clippy::inline_always, reason = "only what is inlined is compiled for the processor at hand")]
 #[inline(always)]
-fn visit(
-    balls: &[Ball],
-    range: std::ops::Range<usize>,
-    point: &Vector3<f64>,
-    reach: f64,
-    mut visit: impl FnMut(usize),
-) {
-    for (number, (centre, radius)) in range.clone().zip(balls.get(range).unwrap_or_default()) {
-        let apart = reach + radius;
-        // Written so that a NaN is near.
-        let is_far = (point - centre).norm_squared() > apart * apart;
-        if !is_far {
-            visit(number);
-        }
-    }
+fn reaches((centre, radius): &Ball, point: &Vector3<f64>, reach: f64) -> bool {
+    let apart = reach + radius;
+    // Written so that a NaN is near.
+    let is_far = (point - centre).norm_squared() > apart * apart;
+    !is_far
 }
 
 /// Looks at the boxes of a block.
@@ -198,9 +183,7 @@ fn visit(
 #[inline(always)]
 fn look(block: &Block, number: usize, point: &Vector3<f64>, reach: f64, out: &mut Vec<NearBox>) {
     // OPTIMIZATION: what stands together is registered together, and mostly it is far away together.
-    let (centre, radius) = &block.ball;
-    let apart = reach + radius;
-    if (point - centre).norm_squared() > apart * apart {
+    if !reaches(&block.ball, point, reach) {
         return;
     }
     let limit = reach * reach;
@@ -243,7 +226,8 @@ impl BoxBatch {
             .map(|chunk| {
                 let mut block = Block::EMPTY;
                 chunk.iter().enumerate().for_each(|(lane, placed)| block.put(lane, placed));
-                block.ball = Block::ball_around(chunk);
+                block.ball =
+                    ball_around(&chunk.iter().map(|placed| (placed.centre, placed.half.norm())).collect::<Vec<_>>());
                 // Unused lanes: identity axes, so that the far centre counts.
                 for lane in chunk.len()..LANES {
                     for k in 0..3 {
@@ -255,8 +239,8 @@ impl BoxBatch {
             .collect();
         let levels = (boxes.len() > FEW).then(|| {
             let balls: Vec<_> = blocks.iter().map(|block| block.ball).collect();
-            let groups: Vec<_> = balls.chunks(FAN).map(ball_around_balls).collect();
-            let wholes = groups.chunks(FAN).map(ball_around_balls).collect();
+            let groups: Vec<_> = balls.chunks(FAN).map(ball_around).collect();
+            let wholes = groups.chunks(FAN).map(ball_around).collect();
             [groups, wholes]
         });
         Self { blocks, levels }

@@ -62,12 +62,25 @@ pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
         return Err(FileError::NotAFile { path: shown() });
     }
     check_length(told.len(), &shown(), limit)?;
-    let mut bytes = Vec::new();
     // The size told can be wrong (growing files, those of the kernel), so the reading is bounded as well.
-    let file = File::open(path).map_err(unreadable)?;
-    file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(unreadable)?;
-    check_length(bytes.len() as u64, &shown(), limit)?;
+    bounded(File::open(path).map_err(unreadable)?, &shown(), limit)
+}
+
+/// What is left of `source`, at most `limit` bytes of it.
+fn bounded(source: impl Read, name: &str, limit: u64) -> Result<Vec<u8>, FileError> {
+    let mut bytes = Vec::new();
+    source.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| FileError::Unreadable {
+        path: name.to_owned(),
+        kind: error.kind(),
+        reason: error.to_string(),
+    })?;
+    check_length(bytes.len() as u64, name, limit)?;
     Ok(bytes)
+}
+
+fn utf8(bytes: Vec<u8>, name: &str) -> Result<String, FileError> {
+    String::from_utf8(bytes)
+        .map_err(|error| FileError::NotUtf8 { path: name.to_owned(), offset: error.utf8_error().valid_up_to() })
 }
 
 /// What is left of `source`, as UTF-8 text, at most `limit` bytes of it; `name` is what messages call it.
@@ -75,16 +88,7 @@ pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
 /// # Errors
 /// [`FileError`] with the name when it is longer, cannot be read, or is no text.
 pub fn read_stream(source: impl Read, name: &str, limit: u64) -> Result<String, FileError> {
-    let path = || name.to_owned();
-    let mut bytes = Vec::new();
-    source.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| FileError::Unreadable {
-        path: path(),
-        kind: error.kind(),
-        reason: error.to_string(),
-    })?;
-    check_length(bytes.len() as u64, name, limit)?;
-    String::from_utf8(bytes)
-        .map_err(|error| FileError::NotUtf8 { path: path(), offset: error.utf8_error().valid_up_to() })
+    utf8(bounded(source, name, limit)?, name)
 }
 
 /// As [`read_bytes`], for UTF-8 text.
@@ -92,10 +96,7 @@ pub fn read_stream(source: impl Read, name: &str, limit: u64) -> Result<String, 
 /// # Errors
 /// As [`read_bytes`], and [`FileError::NotUtf8`].
 pub fn read_text(path: &Path, limit: u64) -> Result<String, FileError> {
-    String::from_utf8(read_bytes(path, limit)?).map_err(|error| FileError::NotUtf8 {
-        path: path.display().to_string(),
-        offset: error.utf8_error().valid_up_to(),
-    })
+    utf8(read_bytes(path, limit)?, &path.display().to_string())
 }
 
 /// Refuses a content of more than `limit` bytes; `name` is what the message calls it.

@@ -236,6 +236,11 @@ impl CollisionModel {
             return;
         }
         poses.unsound.remove(body);
+        self.put(poses, body, registered, world_from_body);
+    }
+
+    /// Places a body, whose pose is sound.
+    fn put(&self, poses: &mut Poses, body: BodyIndex, registered: &Registered, world_from_body: &Isometry3<f64>) {
         let axes = world_from_body.rotation.to_rotation_matrix().into_inner();
         let origin = world_from_body.translation.vector;
         if let Some(pose) = poses.world_from_body.get_mut(body.get()) {

@@ -8,6 +8,7 @@ mod read;
 use crate::check;
 use crate::convert;
 use crate::error::GeomError;
+use crate::shape::corners;
 use nalgebra::{Point3, Vector3};
 use parry3d_f64::shape::{SharedShape, TriMesh};
 use std::path::Path;
@@ -28,6 +29,8 @@ pub const MAXIMUM_TRIANGLES: usize = 2_000_000;
 pub struct TriangleMesh {
     vertices: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
+    /// Corners of the box around it, own frame.
+    bounds: (Point3<f64>, Point3<f64>),
     parry: SharedShape,
     /// Triangles without an area, which may close the gap between others.
     flat: Vec<[Point3<f64>; 3]>,
@@ -50,13 +53,14 @@ impl TriangleMesh {
         }
         let (vertices, triangles, flat) = compact(name, vertices, triangles)?;
         check::count(format_args!("triangles with an area of {name}"), triangles.len(), 1, MAXIMUM_TRIANGLES)?;
-        let corners = vertices.iter().map(|p| convert::vector(&p.coords)).collect();
-        let mesh = TriMesh::new(corners, triangles.clone()).map_err(|error| GeomError::Malformed {
+        let points = vertices.iter().map(|p| convert::vector(&p.coords)).collect();
+        let mesh = TriMesh::new(points, triangles.clone()).map_err(|error| GeomError::Malformed {
             path: name.to_owned(),
             format: "mesh",
             reason: error.to_string(),
         })?;
-        Ok(Self { vertices, triangles, parry: SharedShape::new(mesh), flat, inside: Arc::default() })
+        let bounds = corners(&vertices);
+        Ok(Self { vertices, triangles, bounds, parry: SharedShape::new(mesh), flat, inside: Arc::default() })
     }
 
     /// Reads a mesh from an STL (ascii or binary), OBJ, COLLADA (`dae`) or binary glTF (`glb`) file, chosen by the ending; each
@@ -122,6 +126,11 @@ impl TriangleMesh {
             let with_area = self.triangles.iter().map(|[a, b, c]| [corner(a), corner(b), corner(c)]);
             Inside::new(with_area.chain(self.flat.iter().copied()))
         })
+    }
+
+    /// Lowest and highest corner of the box around it, own frame.
+    pub(crate) fn bounds(&self) -> (Point3<f64>, Point3<f64>) {
+        self.bounds
     }
 
     pub(crate) fn parry(&self) -> &SharedShape {

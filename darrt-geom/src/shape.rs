@@ -138,7 +138,7 @@ impl Shape {
             Self::Cylinder { radius, half_height } => Vector3::new(*radius, *radius, *half_height),
             Self::Capsule { radius, half_height } => Vector3::new(*radius, *radius, half_height + radius),
             Self::ConvexHull(hull) => return corners(hull.vertices()),
-            Self::Mesh(mesh) => return corners(mesh.vertices()),
+            Self::Mesh(mesh) => return mesh.bounds(),
             Self::HalfSpace { .. } => Vector3::repeat(f64::INFINITY),
         };
         (Point3::from(-half), Point3::from(half))
@@ -205,7 +205,7 @@ impl Shape {
 }
 
 /// Corners of the axis-aligned box around `points`.
-fn corners(points: &[Point3<f64>]) -> (Point3<f64>, Point3<f64>) {
+pub(crate) fn corners(points: &[Point3<f64>]) -> (Point3<f64>, Point3<f64>) {
     let start = (Point3::from(Vector3::repeat(f64::INFINITY)), Point3::from(Vector3::repeat(f64::NEG_INFINITY)));
     points.iter().fold(start, |(low, high), p| (low.inf(p), high.sup(p)))
 }

@@ -71,10 +71,11 @@ impl CollisionModelBuilder {
     pub fn build(self) -> CollisionModel {
         let Self { mut bodies, solids, planes, disabled, .. } = self;
         let indices: Vec<BodyIndex> = (0_u16..).map(BodyIndex::new).take(bodies.len()).collect();
-        let is_moving: Vec<bool> = bodies.iter().map(|body| body.fixed.is_none()).collect();
-        let moving = |body: BodyIndex| is_moving.get(body.get()).copied().unwrap_or(false);
-        for &a in indices.iter().filter(|a| moving(**a)) {
-            for &b in indices.iter().filter(|b| **b != a) {
+        let moves = |index: &BodyIndex| bodies.get(index.get()).is_some_and(|body| body.fixed.is_none());
+        let moving: BodySet = indices.iter().copied().filter(moves).collect();
+        for a in moving.iter() {
+            // A pair of two that move comes once.
+            for &b in indices.iter().filter(|b| **b > a || !moving.contains(**b)) {
                 if disabled.contains(&(a.min(b), a.max(b))) {
                     continue;
                 }
@@ -86,14 +87,13 @@ impl CollisionModelBuilder {
             }
         }
         let nowhere = PlacedBox { centre: Vector3::zeros(), axes: Matrix3::identity(), half: Vector3::zeros() };
-        let moving: BodySet = indices.iter().copied().filter(|&body| moving(body)).collect();
         let initial = Poses {
             world_from_body: vec![Isometry3::identity(); bodies.len()],
             // Only those that move are asked for.
             balls: BallBatch::new(&bodies.iter().take(FIRST_OF_CROWD).map(|body| body.radius).collect::<Vec<_>>()),
             placed: vec![nowhere; solids.len()],
-            // Nothing has been placed yet.
-            unsound: indices.iter().copied().collect(),
+            // What is fixed is placed at once.
+            unsound: moving,
         };
         let mut model = CollisionModel {
             bodies,
@@ -160,9 +160,7 @@ impl CollisionModel {
         for &body in indices {
             let Some(registered) = self.bodies.get(body.get()) else { continue };
             if let Some(world_from_body) = registered.fixed {
-                // Of the crowd one stands for all, and each must be placed.
-                poses.unsound.insert(body);
-                self.place(&mut poses, body, &world_from_body);
+                self.put(&mut poses, body, registered, &world_from_body);
                 self.fixed_solids.extend(registered.solids.clone());
             }
         }

@@ -170,10 +170,16 @@ impl Inside {
             return;
         }
         let mut around: Vec<Option<Vec<usize>>> = vec![None; self.counts.len()];
+        // A corner belongs to several triangles of its piece.
+        let mut asked = vec![usize::MAX; self.places.len()];
         for (corners, piece) in self.triangles.iter().zip(&self.piece_of) {
+            if self.counts[*piece] == 0 {
+                continue;
+            }
             for corner in corners {
                 let known = &mut around[*piece];
-                if known.as_ref().is_some_and(Vec::is_empty) {
+                let is_asked = std::mem::replace(&mut asked[*corner as usize], *piece) == *piece;
+                if is_asked || known.as_ref().is_some_and(Vec::is_empty) {
                     continue;
                 }
                 let here = self.around(&back(&self.places[*corner as usize]));

@@ -12,4 +12,5 @@ pub(crate) mod problems;
 pub(crate) mod robot;
 pub(crate) mod schema;
 pub(crate) mod show;
+mod tape;
 pub(crate) mod why_not;

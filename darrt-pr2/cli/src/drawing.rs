@@ -21,12 +21,11 @@ pub(crate) fn file(
     format: Format,
     extent: Extent,
 ) -> Result<Vec<u8>, Failure> {
-    let figure = || picture::draw(story, extent);
     Ok(match format {
-        Format::Svg => figure().into_bytes(),
-        Format::Png => raster::png(&figure())?,
-        Format::Glb => viewer::glb::file(&data(story, plan, robot)?)?,
-        Format::Html => viewer::page(&data(story, plan, robot)?, &figure())?.into_bytes(),
+        Format::Svg => picture::draw(story, extent).into_bytes(),
+        Format::Png => raster::png(&picture::draw(story, extent))?,
+        Format::Glb => viewer::glb::file(&data(story, plan, &RobotModel::of(robot)?)?)?,
+        Format::Html => page(story, plan, &RobotModel::of(robot)?, (extent, None, None))?,
     })
 }
 
@@ -37,18 +36,17 @@ pub(crate) fn file(
 pub(crate) fn page(
     story: &Story,
     plan: Option<&PlanFile>,
-    robot: &RobotFacts,
+    robot: &RobotModel,
     (extent, why, search): (Extent, Option<WhyData>, Option<SearchData>),
 ) -> Result<Vec<u8>, Failure> {
     let data = ViewerData { why, search, ..data(story, plan, robot)? };
     Ok(viewer::page(&data, &picture::draw(story, extent))?.into_bytes())
 }
 
-fn data(story: &Story, plan: Option<&PlanFile>, robot: &RobotFacts) -> Result<ViewerData, ViewerError> {
-    let robot = RobotModel::of(robot)?;
+fn data(story: &Story, plan: Option<&PlanFile>, robot: &RobotModel) -> Result<ViewerData, ViewerError> {
     match plan {
-        Some(plan) => viewer::of_plan(plan, &story.note, &robot),
-        None => viewer::of_problem(&story.problem, &start(story, &robot), &robot),
+        Some(plan) => viewer::of_plan(plan, &story.note, robot),
+        None => viewer::of_problem(&story.problem, &start(story, robot), robot),
     }
 }
 

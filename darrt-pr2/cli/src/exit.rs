@@ -62,10 +62,9 @@ impl Failure {
     }
 }
 
-impl From<PlanningError> for Failure {
-    fn from(error: PlanningError) -> Self {
-        let exit = if error.is_impossible() { Exit::Impossible } else { Exit::BadInput };
-        Self::new(exit, on_one_line(&error.to_string()))
+impl From<&PlanningError> for Exit {
+    fn from(error: &PlanningError) -> Self {
+        if error.is_impossible() { Self::Impossible } else { Self::BadInput }
     }
 }
 

@@ -46,6 +46,15 @@ impl Output {
     }
 }
 
+/// A result for programs; `what` names it where it cannot be written.
+///
+/// # Errors
+/// [`Exit::CannotWrite`] for what has no form as JSON.
+pub(crate) fn json(value: &impl serde::Serialize, what: &str) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value);
+    text.map_err(|error| Failure::new(Exit::CannotWrite, format!("{what} cannot be written as JSON: {error}")))
+}
+
 /// Says before any work whether a file can be put at `path`, and where it will really be: links are followed.
 ///
 /// # Errors

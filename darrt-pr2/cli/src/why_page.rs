@@ -36,14 +36,15 @@ pub(crate) fn page(program: &dyn Program, told: &Told<'_>) -> Result<Vec<u8>, Fa
         Some(plan) => Story::of_plan(plan, &robot)?,
         None => Story::of_problem(problem, &robot)?,
     };
-    let why = why(told, &RobotModel::of(&robot)?)?;
+    let robot = RobotModel::of(&robot)?;
+    let why = why(told, &robot)?;
     let search = told.result.and_then(|result| result.recording.as_ref()).map(SearchData::of);
     drawing::page(&story, partial, &robot, (Extent::Whole, Some(why), search))
 }
 
 fn why(told: &Told<'_>, robot: &RobotModel) -> Result<WhyData, Failure> {
     let Told { problem, result, diagnosis } = told;
-    let (told_blocks, other_blocks) = result.map(|result| blocks(&result.accounts.blocks)).unwrap_or_default();
+    let (told_blocks, other_blocks) = result.map(|result| blocks(&result.accounts)).unwrap_or_default();
     let nearest = match result.and_then(|result| Some((result.nearest.as_ref()?, result.nearest_to_goal))) {
         Some((waypoint, to_go_m)) if to_go_m.is_finite() => {
             Some(NearestData { to_go_m, state: viewer::state(problem, waypoint, robot)? })

@@ -2,11 +2,12 @@
 //! joints puts it elsewhere.
 
 use darrt_primitives::kinematics::jacobian::Chain;
+use darrt_primitives::manipulator::world_from_base;
 use darrt_task::robot::RobotFacts;
 use nalgebra::{DMatrix, Isometry3, Matrix6, Point3, Vector6};
 
 use crate::error::ExecuteError;
-use crate::robot::{Robot, world_from_base};
+use crate::robot::Robot;
 
 /// A hand this near to where it should be is there, metres and radians.
 const REACHED: (f64, f64) = (1e-4, 1e-3);
@@ -39,7 +40,7 @@ impl Arm {
     /// Where the tool frame is.
     pub(crate) fn world_from_tool(robot: &Robot, base: [f64; 3], joints: &[f64]) -> Isometry3<f64> {
         let mut links = Vec::new();
-        robot.link_poses(&world_from_base(base), joints, &mut links);
+        robot.link_poses(&world_from_base(&base), joints, &mut links);
         links.get(robot.tool).copied().unwrap_or_else(Isometry3::identity)
     }
 
@@ -66,7 +67,7 @@ impl Arm {
         point: &Point3<f64>,
     ) -> DMatrix<f64> {
         let mut links = Vec::new();
-        robot.link_poses(&world_from_base(base), joints, &mut links);
+        robot.link_poses(&world_from_base(&base), joints, &mut links);
         let columns = self.jacobian(robot, &links, point);
         let mut rows = DMatrix::zeros(3, 3 + columns.len());
         rows.view_mut((0, 0), (3, 3)).fill_with_identity();
@@ -94,7 +95,7 @@ impl Arm {
         target: &Isometry3<f64>,
         offset: &[f64],
     ) -> Option<Vec<f64>> {
-        let (mut links, mut offset, root) = (Vec::new(), offset.to_vec(), world_from_base(base));
+        let (mut links, mut offset, root) = (Vec::new(), offset.to_vec(), world_from_base(&base));
         let mut now = joints.to_vec();
         for _ in 0..MOST_STEPS {
             for ((variable, offset), joints) in

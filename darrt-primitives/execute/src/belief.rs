@@ -419,7 +419,7 @@ mod tests {
             let truth = belief.objects[0].translation.vector.xy() + Vector2::new(at[0], at[1]);
             let base = draws.drive([0.0; 3]);
             belief.drive([0.0; 3]);
-            let world_from_base = crate::robot::world_from_base(base);
+            let world_from_base = darrt_primitives::manipulator::world_from_base(&base);
             for _ in 0..3 {
                 let bodies = [(None, Vector2::new(0.8, 0.1)), (Some(0), truth)];
                 for (object, world) in bodies {

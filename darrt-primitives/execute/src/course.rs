@@ -63,7 +63,8 @@ impl Course {
     /// How much of the way of a pushed object is behind it, 0 to 1.
     pub(crate) fn part_pushed(&self, of: &Execution<'_>, step: &TimedStep, object: usize, time_s: f64) -> f64 {
         let name = of.problem.objects.get(object).map_or("", |object| &object.name);
-        let at = |time_s: f64| self.timeline.object(step, time_s, name).unwrap_or_default().translation.vector;
+        let at =
+            |time_s: f64| self.timeline.objects(step, time_s).get(name).copied().unwrap_or_default().translation.vector;
         let (from, now, to) = (at(step.begin_s), at(time_s), at(step.end_s));
         let whole = (to - from).norm();
         if whole > 0.0 { ((now - from).norm() / whole).min(1.0) } else { 0.0 }

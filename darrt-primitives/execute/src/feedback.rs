@@ -117,8 +117,7 @@ impl Feedback {
 
     /// The robot at a time of a step.
     pub(crate) fn posture(&self, of: &Execution<'_>, course: &Course, step: &TimedStep, time_s: f64) -> Posture {
-        let command = course.timeline.at(step, time_s, &of.robot);
-        Posture::new(of, &self.belief, (&command.base, &command.joints), &self.offset)
+        Posture::at(of, course, &self.belief, (step, time_s), &self.offset)
     }
 
     /// Looks at every object, and at the furniture where the next contact is: `base` and `objects` are where they truly are.
@@ -131,7 +130,7 @@ impl Feedback {
         error: &mut dyn FnMut() -> PlanarError,
     ) {
         self.looks += 1;
-        let world_from_base = crate::robot::world_from_base(base);
+        let world_from_base = darrt_primitives::manipulator::world_from_base(&base);
         let mut sight = |object: Option<usize>, world_from_body: &Isometry3<f64>, error: PlanarError| {
             let seen = world_from_base.inverse() * world_from_body;
             let at = [seen.translation.x, seen.translation.y, crate::belief::yaw_of(world_from_body) - base[2]];

@@ -9,7 +9,7 @@ use serde::Serialize;
 /// An object within this of its goal, upright, counts as near it, metres: how the paper's runs can be judged by eye.
 pub const NEAR_M: f64 = 0.05;
 /// How far an object that should stand may lean, degrees.
-const UPRIGHT_DEG: f64 = 3.0;
+pub(crate) const UPRIGHT_DEG: f64 = 3.0;
 /// How far its bottom may be above or below its surface, metres.
 const HEIGHT_M: f64 = 0.005;
 /// How far an object without a goal may be from where the plan leaves it, metres.

@@ -7,12 +7,11 @@ use darrt_primitives::contract::HandUse;
 use darrt_task::plan_file::PlanFile;
 use nalgebra::Isometry3;
 
-use crate::belief::Belief;
 use crate::course::Course;
 use crate::feedback::{Feedback, Offsets};
 use crate::goal::{self, Now, ObjectEnd};
 use crate::noise::{Draws, NoiseModel, PlanarError};
-use crate::progress::{Posture, advance};
+use crate::progress::advance;
 use crate::recording::{FRAME_S, Frame, RecordedStep, Recording};
 use crate::run::{Execution, FeedbackCount, Loop, RunReport, StepEnd};
 use crate::stage::{Owner, STEP_S, Stage, TrueObject};
@@ -242,13 +241,20 @@ impl<'a> Performance<'a> {
         self.write_frame(base, &command.joints);
     }
 
+    /// Is everything written down at this time step?
+    fn is_frame_due(&self, ticks: u64) -> bool {
+        let last = |recording: &Recording| recording.frames.last().map(|last| last.time_s);
+        let is_long_ago = |last_s: f64| ticks as f64 * STEP_S - last_s >= FRAME_S - 0.5 * STEP_S;
+        self.recording.as_ref().is_some_and(|recording| last(recording).is_none_or(is_long_ago))
+    }
+
     /// Writes down where everything is, now and then.
     fn write_frame(&mut self, base: [f64; 3], joints: &[f64]) {
-        let Some(recording) = &mut self.recording else { return };
-        let time_s = self.ticks as f64 * STEP_S;
-        if recording.frames.last().is_some_and(|last| time_s - last.time_s < FRAME_S - 0.5 * STEP_S) {
+        if !self.is_frame_due(self.ticks) {
             return;
         }
+        let Some(recording) = &mut self.recording else { return };
+        let time_s = self.ticks as f64 * STEP_S;
         let objects = (0..self.of.problem.objects.len()).map(|object| self.stage.object(object)).collect();
         let planned = self.now_planned.clone();
         recording.frames.push(Frame { time_s, base, joints: joints.to_vec(), objects, planned });
@@ -271,7 +277,9 @@ impl<'a> Performance<'a> {
         while elapsed < count {
             elapsed += 1;
             let time_s = step.begin_s + elapsed as f64 * STEP_S;
-            self.plan_at(step, time_s);
+            if self.is_frame_due(self.ticks + 1) || elapsed == count {
+                self.plan_at(step, time_s);
+            }
             let command = self.course.timeline.at(step, time_s, &self.of.robot);
             let error = [0, 1, 2].map(|i| self.error[i] + command.done * (self.next_error[i] - self.error[i]));
             let offset = offsets.map_or_else(Vec::new, |offsets| offsets.at(time_s - step.begin_s, command.done));
@@ -287,6 +295,7 @@ impl<'a> Performance<'a> {
             if let Some(event) = event {
                 self.note(index, elapsed as f64 / count as f64, &event);
                 if self.stopped.is_some() {
+                    self.plan_at(step, time_s);
                     return Some(elapsed);
                 }
             }
@@ -294,14 +303,8 @@ impl<'a> Performance<'a> {
         self.error = self.next_error;
         self.planned.clone_from(&step.ends);
         if let (Some(feedback), Some(before)) = (&mut self.feedback, before) {
-            let mut belief = feedback.belief.clone();
-            let end = |belief: &Belief| {
-                let command = self.course.timeline.at(step, step.end_s, &self.of.robot);
-                Posture::new(self.of, belief, (&command.base, &command.joints), &feedback.offset)
-            };
-            advance(self.of, &self.course, &mut belief, (index, step), &before, &end);
-            feedback.now = end(&belief);
-            feedback.belief = belief;
+            advance(self.of, &self.course, &mut feedback.belief, (index, step), &before, &feedback.offset);
+            feedback.now = feedback.posture(self.of, &self.course, step, step.end_s);
         }
         if let Some(event) = self.watch.end(&self.stage, step) {
             self.note(index, 1.0, &event);
@@ -312,9 +315,9 @@ impl<'a> Performance<'a> {
     /// For recordings: where the plan has the objects at a time.
     fn plan_at(&mut self, step: &TimedStep, time_s: f64) {
         if self.recording.is_some() {
+            let moved = self.course.timeline.objects(step, time_s);
             let pairs = self.of.problem.objects.iter().zip(&self.planned);
-            let poses =
-                pairs.map(|(object, rest)| self.course.timeline.object(step, time_s, &object.name).unwrap_or(*rest));
+            let poses = pairs.map(|(object, rest)| moved.get(object.name.as_str()).copied().unwrap_or(*rest));
             self.now_planned = poses.collect();
         }
     }

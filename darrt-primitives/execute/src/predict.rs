@@ -17,7 +17,6 @@ use nalgebra::{Matrix2, Matrix3, SymmetricEigen, Vector2, Vector3};
 use serde::Serialize;
 
 use crate::arm::Arm;
-use crate::belief::Belief;
 use crate::course::Course;
 use crate::feedback::Feedback;
 use crate::goal::{self, NEAR_M, Now};
@@ -95,21 +94,15 @@ impl Execution<'_> {
     pub fn predict(&self, noise: &NoiseModel, looks: bool) -> Prediction {
         let course = &*self.course;
         let mut know = Feedback::new(self, course, noise);
-        let rest = know.offset.clone();
         let mut steps = Vec::new();
         for (index, step) in course.timeline.steps.iter().enumerate() {
             let does_look = looks && step.senses;
             if does_look {
                 expect_look(self, course, &mut know, index);
             }
-            let at = |belief: &Belief, time_s: f64| {
-                let command = course.timeline.at(step, time_s, &self.robot);
-                Posture::new(self, belief, (&command.base, &command.joints), &rest)
-            };
-            let begin = at(&know.belief, step.begin_s);
-            let end = |belief: &Belief| at(belief, step.end_s);
-            let contact = advance(self, course, &mut know.belief, (index, step), &begin, &end);
-            let after = end(&know.belief);
+            let begin = know.posture(self, course, step, step.begin_s);
+            let contact = advance(self, course, &mut know.belief, (index, step), &begin, &know.offset);
+            let after = know.posture(self, course, step, step.end_s);
             let tool = after.believed.translation.vector.into();
             let hand = self.arm.error_of_hand(&self.robot, after.base, &after.joints, &tool);
             let is_gripped = step.pushes.is_some() || step.contract.hand == HandUse::Takes;

@@ -26,6 +26,18 @@ pub(crate) struct Posture {
 
 impl Posture {
     /// At a time of a step, the joints of the arm `offset` from the plan.
+    pub(crate) fn at(
+        of: &Execution<'_>,
+        course: &Course,
+        belief: &Belief,
+        (step, time_s): (&TimedStep, f64),
+        offset: &[f64],
+    ) -> Self {
+        let command = course.timeline.at(step, time_s, &of.robot);
+        Self::new(of, belief, (&command.base, &command.joints), offset)
+    }
+
+    /// As it is told to stand, the joints of the arm `offset` from that.
     pub(crate) fn new(of: &Execution<'_>, belief: &Belief, command: (&[f64; 3], &[f64]), offset: &[f64]) -> Self {
         let (planned_base, planned) = command;
         let mut joints = planned.to_vec();
@@ -55,15 +67,15 @@ pub(crate) struct Contact {
     pub(crate) gap_m: f64,
 }
 
-/// Takes a step into account that went as it should. `begin` and `end` are the robot's; the base of `belief` is still where it
-/// was.
+/// Takes a step into account that went as it should, begun by the robot as `begin` says, the joints of the arm `offset` from the
+/// plan at its end; the base of `belief` is still where it was.
 pub(crate) fn advance(
     of: &Execution<'_>,
     course: &Course,
     belief: &mut Belief,
     (index, step): (usize, &TimedStep),
     begin: &Posture,
-    end_at: &dyn Fn(&Belief) -> Posture,
+    offset: &[f64],
 ) -> Option<Contact> {
     let planned = course.before(index);
     let handled = step.pushes.or(step.holds.map(|(object, _)| object));
@@ -104,7 +116,7 @@ pub(crate) fn advance(
     if step.contract.drives() {
         belief.drive(course.timeline.at(step, step.end_s, &of.robot).base);
     }
-    let end = end_at(belief);
+    let end = Posture::at(of, course, belief, (step, step.end_s), offset);
     let kept = keep * Vector3::from(level_change(&by_hand, &before, is_round));
     let tool_from_end = if step.pushes.is_some() {
         end.planned.inverse() * step.ends.get(object).copied().unwrap_or_default()

@@ -22,8 +22,6 @@ const MOST_REPLANS: usize = 3;
 const MOST_BACK: usize = 3;
 /// What stands on a surface may be this far from its height, metres: things rock, and are seen so.
 const ON_TOP_M: f64 = 0.01;
-/// An object that leans more has been knocked over, degrees: no plan begins with it.
-const UPRIGHT_DEG: f64 = 3.0;
 
 /// One that leans more than it did has fallen, degrees.
 const FALLEN_DEG: f64 = 30.0;
@@ -198,25 +196,15 @@ impl Performance<'_> {
         let limits = self.of.robot.tree.variables();
         let joint = |variable: &usize| Some(limits.get(*variable)?.limit.clamp(*joints.get(*variable)?));
         problem.robot.joints = Some(self.of.robot.arm.iter().map(joint).collect::<Option<_>>()?);
-        let surfaces = problem
-            .objects
-            .iter()
-            .map(|object| problem.allowed_surfaces(object).into_iter().map(str::to_owned).collect::<Vec<_>>());
-        let surfaces: Vec<_> = surfaces.collect();
-        let objects = problem.objects.iter_mut().zip(surfaces).enumerate();
-        for (number, (object, allowed)) in objects {
+        for (number, object) in problem.objects.iter_mut().enumerate() {
             let (seen, truth) = (feedback.belief.objects.get(number)?, self.stage.object(number));
-            if goal::lean_deg(&truth, &Isometry3::identity()) > UPRIGHT_DEG {
+            // What has been knocked over is no start.
+            if goal::lean_deg(&truth, &Isometry3::identity()) > goal::UPRIGHT_DEG {
                 return None;
             }
             let bottom = truth.translation.z - self.of.depths.get(number)?;
             let at = seen.translation.vector.xy();
-            let carries = |name: &&String| {
-                self.of.scene.surface(name).is_some_and(|surface| {
-                    (surface.height() - bottom).abs() <= ON_TOP_M && surface.contains(&at.into())
-                })
-            };
-            object.on.clone_from(allowed.iter().find(carries)?);
+            object.on = self.of.problem.surface_under(object, &self.of.scene, (&at.into(), bottom), ON_TOP_M)?;
             object.at = at.into();
             object.yaw = crate::belief::yaw_of(seen);
         }

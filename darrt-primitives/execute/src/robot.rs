@@ -3,7 +3,7 @@
 use darrt_primitives::kinematics::link_bodies;
 use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
 use darrt_task::robot::RobotFacts;
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::Isometry3;
 use rapier3d_f64::prelude::Pose;
 
 use crate::error::ExecuteError;
@@ -219,9 +219,4 @@ fn between(tree: &KinematicTree, pieces: &[Vec<Piece>], tool: usize, tips: [usiz
         found.extend(own.filter(|link| pieces.get(*link).is_some_and(|own| !own.is_empty())).map(|link| (index, link)));
     }
     found
-}
-
-/// Where a base at x, y and yaw has the robot's root.
-pub(crate) fn world_from_base([x, y, yaw]: [f64; 3]) -> Isometry3<f64> {
-    Isometry3::from_parts(Translation3::new(x, y, 0.0), UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw))
 }

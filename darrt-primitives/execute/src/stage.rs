@@ -2,6 +2,7 @@
 //!
 //! Nothing is welded: what is in the hand is there by the pressure and friction of two fingertips.
 
+use darrt_primitives::manipulator::world_from_base;
 use darrt_task::problem_file::{ProblemFile, geometry::FLOOR};
 use nalgebra::{Isometry3, Vector3};
 use rapier3d_f64::prelude::{
@@ -11,7 +12,7 @@ use rapier3d_f64::prelude::{
 
 use crate::error::ExecuteError;
 use crate::fingers::Fingers;
-use crate::robot::{Opening, Robot, world_from_base};
+use crate::robot::{Opening, Robot};
 use crate::solids::{self, Piece};
 
 /// Time step, s. At 1/60 s pads sink into what they hold.
@@ -209,7 +210,7 @@ impl<'a> Stage<'a> {
         let pairs = scenery.objects.iter().zip(objects).enumerate();
         let objects = pairs.map(|(index, (pieces, is))| add_object(&mut world, index, pieces, is)).collect();
         let mut poses = Vec::new();
-        robot.link_poses(&world_from_base(base), joints, &mut poses);
+        robot.link_poses(&world_from_base(&base), joints, &mut poses);
         let mut links = Vec::new();
         for (link, pieces) in robot.pieces.iter().enumerate() {
             if pieces.is_empty() || robot.hand.links.contains(&link) {
@@ -231,7 +232,7 @@ impl<'a> Stage<'a> {
         if let Some(slot) = joints.get_mut(self.robot.finger) {
             *slot = now.joint;
         }
-        self.robot.link_poses(&world_from_base(base), joints, &mut self.poses);
+        self.robot.link_poses(&world_from_base(&base), joints, &mut self.poses);
         for (link, handle) in &self.links {
             go_to(&mut self.world, *handle, pose_of(&self.poses, *link));
         }

@@ -1,8 +1,11 @@
 //! When the robot is where, and what its fingers are told: the clock of the plan with the object of every step.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use darrt_core::budget::Cancel;
 use darrt_primitives::contract::{Contract, HandUse};
-use darrt_task::clock::{EventKind, TimedPlan, give_clock};
+use darrt_task::clock::{EventKind, Moment, TimedPlan, give_clock};
 use darrt_task::plan_file::{PlanFile, Step};
 use darrt_task::robot::RobotFacts;
 use darrt_task::verify::VerifyOptions;
@@ -98,16 +101,19 @@ impl Timeline {
         (moment.base, moment.joints)
     }
 
-    /// Where the plan has an object at a time of its clock that lies in this step, by its name.
-    pub(crate) fn object(&self, step: &TimedStep, time_s: f64, name: &str) -> Option<Isometry3<f64>> {
-        let moment = self.plan.at(time_s.min(step.end_s - TIME_ROUNDING_S).max(step.begin_s));
-        self.plan.objects(&moment).get(name).copied()
+    /// Where the plan has the objects at a time of its clock that lies in this step, by their names.
+    pub(crate) fn objects(&self, step: &TimedStep, time_s: f64) -> BTreeMap<Arc<str>, Isometry3<f64>> {
+        self.plan.objects(&self.moment(step, time_s))
+    }
+
+    /// The plan at a time that lies in this step: at its very end a step is still that step.
+    fn moment(&self, step: &TimedStep, time_s: f64) -> Moment {
+        self.plan.at(time_s.min(step.end_s - TIME_ROUNDING_S).max(step.begin_s))
     }
 
     /// What the robot is told at a time of the plan's clock that lies in this step.
     pub(crate) fn at(&self, step: &TimedStep, time_s: f64, robot: &Robot) -> Command {
-        // At its very end a step is still that step.
-        let moment = self.plan.at(time_s.min(step.end_s - TIME_ROUNDING_S).max(step.begin_s));
+        let moment = self.moment(step, time_s);
         let planned = moment.joints.get(robot.finger).copied().unwrap_or_else(|| robot.hand.closed());
         let finger = match step.closes {
             Some([there, _]) => squeezed(robot, planned, time_s - there),

@@ -95,19 +95,22 @@ impl FloorPlan {
                 .map(|(_, i)| *i)
         };
         for (i, a) in self.obstacles.iter().enumerate() {
-            let (left_m, right_m) = (a.left_m(), a.left_m() + 2.0 * a.outline.reach_m());
-            let mut others: Vec<usize> = between(left_m - WIDE_M, right_m + WIDE_M).filter(|j| *j > i).collect();
-            others.sort_unstable();
-            for (j, b) in others.into_iter().filter_map(|j| Some((j, self.obstacles.get(j)?))) {
-                let is_level = a.z_m[0] < b.z_m[1] && b.z_m[0] < a.z_m[1];
-                let beside_m = (a.outline.centre() - b.outline.centre()).norm();
-                if !is_level || beside_m > WIDE_M + a.outline.reach_m() + b.outline.reach_m() {
+            let (centre, reach_m) = (a.outline.centre(), a.outline.reach_m() + WIDE_M);
+            let is_near = |k: &usize| {
+                let other = self.obstacles.get(*k).filter(|_| *k != i).map(|other| &other.outline);
+                other.is_some_and(|other| (centre - other.centre()).norm() <= reach_m + other.reach_m())
+            };
+            let mut near: Vec<usize> = between(centre.x - reach_m, centre.x + reach_m).filter(is_near).collect();
+            near.sort_unstable();
+            let others = near.iter().filter(|j| **j > i);
+            for (j, b) in others.filter_map(|j| Some((*j, self.obstacles.get(*j)?))) {
+                if a.z_m[0] >= b.z_m[1] || b.z_m[0] >= a.z_m[1] {
                     continue;
                 }
                 let contact = a.outline.contact(&b.outline, WIDE_M);
                 let (width_m, middle) = (contact.distance_m, a.outline.beside(&contact));
-                let is_filled = |k: usize| {
-                    let outline = self.obstacles.get(k).filter(|_| k != i && k != j).map(|other| &other.outline);
+                let is_filled = |k: &usize| {
+                    let outline = self.obstacles.get(*k).filter(|_| *k != j).map(|other| &other.outline);
                     // OPTIMIZATION: mostly the circle around it says that it is elsewhere.
                     outline.is_some_and(|outline| {
                         let reach_m = outline.reach_m() + ROUNDING_M;
@@ -115,7 +118,8 @@ impl FloorPlan {
                         is_near && outline.beyond_m(&middle) <= 0.0
                     })
                 };
-                if width_m > 0.0 && width_m < WIDE_M && !between(middle.x, middle.x).any(is_filled) {
+                // What fills the middle is half as far from `a` as `b` may be.
+                if width_m > 0.0 && width_m < WIDE_M && !near.iter().any(is_filled) {
                     self.gaps.push(Gap { middle, width_m });
                 }
             }

@@ -8,7 +8,7 @@ use darrt_core::observe::accounts::Bucket;
 use darrt_core::primitive::{Infeasible, PrimitiveId};
 use darrt_core::random::{Purpose, stream};
 use darrt_core::state::ObjectId;
-use darrt_geom::Shape;
+use darrt_geom::{Scene, Shape};
 use darrt_primitives::action::pick::{lies_flat, pick};
 use darrt_primitives::action::place::place;
 use darrt_primitives::action::push::push;
@@ -17,14 +17,13 @@ use darrt_primitives::goal::{Grip, TabletopGoal};
 use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::mode::Held;
 use darrt_primitives::primitive::{PICK, PLACE, PUSH};
-use darrt_primitives::tabletop::{Tabletop, TabletopState};
+use darrt_primitives::tabletop::{Movable, Tabletop, TabletopState};
 use nalgebra::{Isometry3, Translation3};
 use rand::{Rng, RngExt as _};
 
 use crate::goal_means::Means;
 use crate::grasp_families::why_none_holds;
 use crate::planning_error::PlanningError;
-use crate::problem_file::geometry::Geometry;
 use crate::problem_file::{Object, ProblemFile, ShapeSpec};
 use crate::text::counted;
 
@@ -66,10 +65,10 @@ impl std::fmt::Display for Doubt {
 }
 
 /// What the problem file alone leaves in doubt: meshes that are probably not in metres or not closed.
-pub(crate) fn of_meshes(problem: &ProblemFile, geometry: &Geometry) -> Vec<Doubt> {
-    let bodies = geometry.scene.bodies().iter().map(|fixed| &fixed.body);
+pub(crate) fn of_meshes(problem: &ProblemFile, scene: &Scene, movables: &[Movable]) -> Vec<Doubt> {
+    let bodies = scene.bodies().iter().map(|fixed| &fixed.body);
     let obstacles = problem.obstacles.iter().map(|obstacle| &obstacle.shape).zip(bodies);
-    let bodies = geometry.objects.iter().map(|object| &object.body);
+    let bodies = movables.iter().map(|movable| &movable.body);
     let objects = problem.objects.iter().map(|object| &object.shape).zip(bodies);
     let mut doubts = Vec::new();
     for (shape, body) in obstacles.chain(objects) {

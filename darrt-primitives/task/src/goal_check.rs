@@ -15,7 +15,8 @@ use darrt_geom::scene::Scene;
 use darrt_geom::support::FLUSH_HEIGHT;
 use darrt_geom::{Body, GeomError, Shape};
 use darrt_primitives::goal::{Grip, ObjectGoal, TabletopGoal, Whereabouts};
-use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use darrt_primitives::object_space::upright;
+use nalgebra::{Isometry3, Point3, Translation3, Vector3};
 
 use crate::diagnosis::cause::Occupant;
 use crate::planning_error::PlanningError;
@@ -51,15 +52,18 @@ pub fn check_goal<M: Manipulator>(
 ) -> Result<Option<String>, PlanningError> {
     let room = Room { m, goal, scene, start, immovable };
     room.check_enclosed()?;
-    room.check_places()?;
     let mut blocked = None;
     for i in 0..SAMPLES {
-        let Some(target) = goal.sample(m, &mut stream(0, 0, i, Purpose::Attempt)) else { return Ok(None) };
+        let Some(target) = goal.sample(m, &mut stream(0, 0, i, Purpose::Attempt)) else {
+            return room.check_places().map(|()| None);
+        };
         match room.first_blocked(&target)? {
+            // What is certainly blocked is blocked at every place: nothing is left to prove.
             None => return Ok(None),
             found => blocked = found,
         }
     }
+    room.check_places()?;
     Ok(blocked
         .map(|error| format!("{error}; so it is at all of {SAMPLES} places tried, and not for certain at all others")))
 }
@@ -83,8 +87,7 @@ impl<'a> Placed<'a> {
     /// `None` for a goal that is a region.
     fn new(goal: &'a ObjectGoal) -> Option<Self> {
         let Whereabouts::At(at) = &goal.whereabouts else { return None };
-        let turn = UnitQuaternion::from_euler_angles(0.0, 0.0, goal.yaw.map_or(0.0, |(yaw, _)| yaw));
-        Some(Self { goal, pose: Isometry3::from_parts((*at).into(), turn) })
+        Some(Self { goal, pose: upright(*at, goal.yaw.map_or(0.0, |(yaw, _)| yaw)) })
     }
 }
 
@@ -128,14 +131,11 @@ impl<M: Manipulator> Room<'_, M> {
             let aside_m = one.goal.tolerance_m + yaw_slack_m;
             // What rests is as high as what it rests on.
             let up_m = if one.goal.grip == Grip::Released { RESTING_M } else { one.goal.tolerance_m };
-            let refuse = |by: &Body, occupant| {
-                let (object, at) = (movable.body.name.to_string(), one.pose.translation.vector.into());
-                Ok(Some(PlanningError::GoalBlocked { object, by: by.name.to_string(), occupant, at }))
-            };
+            let refuse =
+                |by: &Body, occupant| Ok(Some(goal_blocked(&movable.body, &one.pose, (by.name.to_string(), occupant))));
             if let Some(core) = shrunk::shrunk(&movable.body, [aside_m, up_m], is_turned) {
-                if let Some((by, occupant)) = in_the_way(self.m, id, &core, &one.pose, self.scene)? {
-                    let (object, at) = (movable.body.name.to_string(), one.pose.translation.vector.into());
-                    return Ok(Some(PlanningError::GoalBlocked { object, by, occupant, at }));
+                if let Some(blame) = in_the_way(self.m, id, &core, &one.pose, self.scene)? {
+                    return Ok(Some(goal_blocked(&movable.body, &one.pose, blame)));
                 }
                 for other in self.immovable.iter().filter(|other| **other != id) {
                     let (Some(body), Some(pose)) = (self.m.movable(*other), self.start.object(*other)) else {
@@ -217,9 +217,8 @@ impl<M: Manipulator> Room<'_, M> {
                 None => self.object_in_the_way(id, &movable.body, pose, target)?,
                 found => found,
             };
-            if let Some((by, occupant)) = blame {
-                let (object, at) = (movable.body.name.to_string(), pose.translation.vector.into());
-                return Ok(Some(PlanningError::GoalBlocked { object, by, occupant, at }));
+            if let Some(blame) = blame {
+                return Ok(Some(goal_blocked(&movable.body, pose, blame)));
             }
         }
         Ok(None)
@@ -244,6 +243,11 @@ impl<M: Manipulator> Room<'_, M> {
         }
         Ok(None)
     }
+}
+
+/// The goal of `body` at `pose` is not free.
+fn goal_blocked(body: &Body, pose: &Isometry3<f64>, (by, occupant): (String, Occupant)) -> PlanningError {
+    PlanningError::GoalBlocked { object: body.name.to_string(), by, occupant, at: pose.translation.vector.into() }
 }
 
 /// Do the two overlap?

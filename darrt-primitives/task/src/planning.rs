@@ -275,14 +275,14 @@ fn prepare_watched<M: TaskRobot>(
     let allowed: Vec<_> = registry.allowed(file).collect();
     crate::goal_means::check_means(file, allowed.iter().copied(), &robot)?;
     let robot = if request.bases_from_reachability { robot.with_bases_from_reachability() } else { robot };
-    let mut doubts = file.geometry().map(|geometry| of_meshes(file, &geometry)).unwrap_or_default();
+    let Built { world, start, goal, scene, near } = world::build_with(registry, file, robot, arm)?;
+    let mut doubts = of_meshes(file, &scene, world.movables());
     // What is wrong with the start may be so because of what is doubted.
     let so_far: Vec<_> = doubts.iter().map(|doubt| doubt.words.clone()).collect();
     let with_doubts = |error: PlanningError| match error {
         error if so_far.is_empty() => error,
         error => PlanningError::Doubtful { error: Box::new(error), doubts: so_far.join("; ") },
     };
-    let Built { world, start, goal, scene, near } = world::build_with(registry, file, robot, arm)?;
     let validity = SceneValidity::new(&world);
     let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal };
     let immovable = outlook.immovable();

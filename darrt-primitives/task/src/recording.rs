@@ -114,9 +114,13 @@ impl Attempt {
 impl Recording {
     /// The attempt with this number, or all; each as it was behind an iteration, if one is given.
     #[must_use]
-    pub fn at(&self, attempt: Option<u64>, iteration: Option<u64>) -> Self {
-        let wanted = self.attempts.iter().filter(|own| attempt.is_none_or(|number| own.attempt == number));
-        let attempts = wanted.map(|own| iteration.map_or_else(|| own.clone(), |at| own.until(at))).collect();
-        Self { attempts, ..self.clone() }
+    pub fn at(mut self, attempt: Option<u64>, iteration: Option<u64>) -> Self {
+        self.attempts.retain(|own| attempt.is_none_or(|number| own.attempt == number));
+        if let Some(at) = iteration {
+            for own in &mut self.attempts {
+                *own = own.until(at);
+            }
+        }
+        self
     }
 }

@@ -234,23 +234,14 @@ impl Old<'_> {
         problem.robot.posture = None;
         let joints = self.facts.arm_joints.iter().map(|name| end.joints.get(name.as_str()).copied());
         problem.robot.joints = Some(joints.collect::<Option<_>>()?);
-        let allowed: Vec<Vec<String>> = problem
-            .objects
-            .iter()
-            .map(|object| problem.allowed_surfaces(object).into_iter().map(str::to_owned).collect())
-            .collect();
-        for ((object, solid), allowed) in problem.objects.iter_mut().zip(&geometry.objects).zip(allowed) {
+        for (object, solid) in problem.objects.iter_mut().zip(&geometry.objects) {
             let pose = Isometry3::from(*end.objects.get(object.name.as_str())?);
             if self.file.start.objects.get(object.name.as_str()) == end.objects.get(object.name.as_str()) {
                 continue;
             }
             let (at, bottom) = (pose.translation.vector, pose.translation.z - solid.depth_below_origin);
-            let carries = |name: &&String| {
-                geometry.scene.surface(name).is_some_and(|surface| {
-                    (surface.height() - bottom).abs() <= ON_TOP_M && surface.contains(&Point2::new(at.x, at.y))
-                })
-            };
-            object.on.clone_from(allowed.iter().find(carries)?);
+            let under = (&Point2::new(at.x, at.y), bottom);
+            object.on = self.file.problem.surface_under(object, &geometry.scene, under, ON_TOP_M)?;
             object.at = [at.x, at.y];
             object.yaw = pose.rotation.euler_angles().2;
         }

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::args::CheckOptions;
 use crate::diagnosis;
 use crate::exit::{Exit, Failure};
-use crate::output::Output;
+use crate::output::{self, Output};
 use crate::steps;
 use darrt_task::goal_edges;
 use darrt_task::picture::Story;
@@ -100,8 +100,7 @@ fn refused(refusal: &Refusal) -> Result<String, Failure> {
 }
 
 fn written(value: &serde_json::Value) -> Result<String, Failure> {
-    let text = serde_json::to_string_pretty(value);
-    text.map_err(|error| Failure::new(Exit::CannotWrite, format!("the verdict cannot be written as JSON: {error}")))
+    output::json(value, "the verdict")
 }
 
 /// Reads a plan file.

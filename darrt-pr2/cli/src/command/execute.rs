@@ -54,11 +54,12 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     let places = [&options.page, &options.mcap].map(|path| path.as_deref().map(output::writable).transpose());
     let [page_place, mcap_place] = places;
     let (page_place, mcap_place) = (page_place?, mcap_place?);
-    let prediction = execution.predict(&noise, options.replan);
+    let prediction = || execution.predict(&noise, options.replan);
     if options.predict {
+        let prediction = prediction();
         let objects: Vec<_> = plan.problem.objects.iter().map(|object| object.name.as_str()).collect();
         if options.json {
-            output.print(&to_json(&prediction, "the prediction")?)?;
+            output.print(&output::json(&prediction, "the prediction")?)?;
         } else if !options.quiet {
             output.print(&expected(&prediction, &objects))?;
         }
@@ -78,9 +79,9 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     });
     bar.finish();
     if options.json {
-        output.print(&json(&runs, &noise, options.seed, count, execution.duration_s(), &prediction)?)?;
+        output.print(&json(&runs, &noise, options.seed, count, execution.duration_s(), &prediction())?)?;
     } else if !options.quiet {
-        output.print(&words(&runs, execution.duration_s(), &prediction))?;
+        output.print(&words(&runs, execution.duration_s(), &prediction()))?;
     }
     let shown = runs.runs.iter().find(|run| !run.is_success).or(runs.runs.first());
     if let Some(shown) = shown.filter(|_| page_place.is_some() || mcap_place.is_some())
@@ -168,12 +169,7 @@ fn json(
         "failures": runs.failures(),
         "runs": runs.runs,
     });
-    to_json(&value, "the runs")
-}
-
-fn to_json(value: &impl serde::Serialize, what: &str) -> Result<String, Failure> {
-    let text = serde_json::to_string_pretty(value);
-    text.map_err(|error| Failure::new(Exit::CannotWrite, format!("{what} cannot be written as JSON: {error}")))
+    output::json(&value, "the runs")
 }
 
 /// What is expected, as a table.

@@ -8,7 +8,7 @@ use super::plan::listen;
 use crate::args::ExplainOptions;
 use crate::diagnosis;
 use crate::exit::{Exit, Failure};
-use crate::output::Output;
+use crate::output::{self, Output};
 use darrt_task::diagnosis::explain::{ExplainRequest, Explanation};
 use darrt_task::planning::PlanRequest;
 use darrt_task::program::Program;
@@ -27,13 +27,11 @@ pub(crate) fn run(program: &dyn Program, options: &ExplainOptions, output: &mut 
     };
     let cancel = Cancel::new();
     listen(&cancel);
-    let explanation = program.explain(&request, &cancel).map_err(|error| {
-        let exit = if error.is_impossible() { Exit::Impossible } else { Exit::BadInput };
-        Failure::new(exit, on_one_line(&format!("{}: {error}", options.problem)))
-    })?;
+    let explanation = program
+        .explain(&request, &cancel)
+        .map_err(|error| Failure::new(Exit::from(&error), on_one_line(&format!("{}: {error}", options.problem))))?;
     if options.json {
-        let text = serde_json::to_string_pretty(&explanation);
-        output.print(&text.map_err(|error| Failure::new(Exit::CannotWrite, error.to_string()))?)?;
+        output.print(&output::json(&explanation, "the explanation")?)?;
     } else {
         output.print(&words(&explanation))?;
     }

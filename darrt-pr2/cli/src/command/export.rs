@@ -1,7 +1,7 @@
 //! `darrt export`: a plan on its clock, in the files that controllers and tools of others read.
 
 mod csv;
-pub(super) mod mcap;
+mod mcap;
 
 use std::path::{Path, PathBuf};
 

@@ -25,6 +25,7 @@ use darrt_task::recording::Recording;
 use darrt_task::replan::{ReplanRequest, Replanned};
 use darrt_task::robot::{RobotError, RobotFacts};
 use darrt_task::text::{counted, on_one_line};
+use darrt_task::viewer::RobotModel;
 use darrt_task::viewer::search::SearchData;
 
 /// Plans and reports.
@@ -235,7 +236,7 @@ fn refused(
     (request, files): (&PlanRequest, &Files),
     error: &PlanningError,
 ) -> Failure {
-    let exit = if error.is_impossible() { Exit::Impossible } else { Exit::BadInput };
+    let exit = Exit::from(error);
     let message = on_one_line(&located(&options.problem, &error.to_string())).into_owned();
     let Some(diagnosis) = Diagnosis::of_error(&request.problem.name, error) else { return Failure::new(exit, message) };
     if let Err(failure) = write_why(options, &diagnosis) {
@@ -353,7 +354,7 @@ impl Files {
         match &self.picture {
             Some((path, Format::Html)) => {
                 let search = recording.map(SearchData::of);
-                let page = drawing::page(story, Some(plan), robot, (Extent::Whole, None, search))?;
+                let page = drawing::page(story, Some(plan), &RobotModel::of(robot)?, (Extent::Whole, None, search))?;
                 output::write_file(path, page)
             }
             Some((path, format)) => {
@@ -381,14 +382,15 @@ impl Files {
 
     /// Writes the beginning of a plan beside where the plan would be, and its picture; says where.
     fn write_partial(&self, program: &dyn Program, plan: &PlanFile) -> Result<PathBuf, Failure> {
-        let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
         let path = with_mark(&self.plan, "partial");
         plan.write(&path)?;
         // A page tells why there is no plan as well, and is written then.
-        let picture = self.picture.as_ref().filter(|(_, format)| *format != Format::Html);
-        let picture = picture.map(|(picture, format)| (with_mark(picture, "partial"), *format));
-        let files = Self { plan: path.clone(), picture, record: None };
-        files.draw(plan, &Story::of_plan(plan, &robot)?, &robot, None)?;
+        if let Some((picture, format)) = self.picture.as_ref().filter(|(_, format)| *format != Format::Html) {
+            let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
+            let story = Story::of_plan(plan, &robot)?;
+            let bytes = drawing::file(&story, Some(plan), &robot, *format, Extent::Whole)?;
+            output::write_file(&with_mark(picture, "partial"), bytes)?;
+        }
         Ok(path)
     }
 

@@ -14,6 +14,7 @@ use darrt_task::program::Program;
 use darrt_task::recording::{Recording, graph};
 use darrt_task::robot::RobotFacts;
 use darrt_task::text::counted;
+use darrt_task::viewer::RobotModel;
 use darrt_task::viewer::search::SearchData;
 
 /// Draws the picture; for a plan prints its steps too. The plan is not judged.
@@ -52,9 +53,9 @@ fn recorded(program: &dyn Program, options: &ShowOptions, output: &mut Output) -
     let source = Path::new(&options.source);
     let whole = Recording::read(source)?;
     whole.problem.validate(&options.source)?;
+    let there: Vec<_> = whole.attempts.iter().map(|attempt| attempt.attempt.to_string()).collect();
     let recording = whole.at(options.attempt, options.iteration);
     if recording.attempts.is_empty() {
-        let there: Vec<_> = whole.attempts.iter().map(|attempt| attempt.attempt.to_string()).collect();
         let text = format!("{}: has no such attempt; there are {}", options.source, there.join(", "));
         return Err(Failure::input(text));
     }
@@ -70,7 +71,12 @@ fn recorded(program: &dyn Program, options: &ShowOptions, output: &mut Output) -
             let robot =
                 program.facts(problem).map_err(|error| Failure::input(format!("{}: {error}", options.source)))?;
             let story = Story::of_problem(problem, &robot)?;
-            drawing::page(&story, None, &robot, (Extent::Whole, None, Some(SearchData::of(&recording))))?
+            drawing::page(
+                &story,
+                None,
+                &RobotModel::of(&robot)?,
+                (Extent::Whole, None, Some(SearchData::of(&recording))),
+            )?
         }
         _ => {
             let text = format!("{}: a recorded search becomes an .html, .graphml or .dot file", path.display());

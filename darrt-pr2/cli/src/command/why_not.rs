@@ -18,7 +18,7 @@ use super::{check, plan};
 use crate::args::WhyNotOptions;
 use crate::diagnosis;
 use crate::exit::{Exit, Failure};
-use crate::output::Output;
+use crate::output::{self, Output};
 
 /// Looks at the idea and tells what it finds.
 ///
@@ -50,8 +50,7 @@ pub(crate) fn run(program: &dyn Program, options: &WhyNotOptions, output: &mut O
     let request = WhyNotRequest { problem: program.open(&options.source)?, idea };
     let answer = program.why_not(&request).map_err(|error| Failure::input(format!("{}: {error}", options.source)))?;
     if options.json {
-        let text = serde_json::to_string_pretty(&answer);
-        output.print(&text.map_err(|error| Failure::new(Exit::CannotWrite, error.to_string()))?)?;
+        output.print(&output::json(&answer, "the answer")?)?;
     } else {
         output.print(&words(&request.idea, &answer))?;
     }

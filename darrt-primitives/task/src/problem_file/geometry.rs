@@ -1,7 +1,7 @@
 //! From a problem file to solids, poses and support surfaces.
 
 use darrt_geom::{Body, FixedBody, GeomError, Part, Scene, Shape, SupportSurface, TriangleMesh};
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point2, Point3, UnitQuaternion, Vector3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -35,6 +35,25 @@ pub struct Geometry {
     pub objects: Vec<StartingObject>,
     /// For each support surface the index of the obstacle in the scene that objects on it touch, where known.
     pub carriers: Vec<Option<usize>>,
+}
+
+impl ProblemFile {
+    /// The surface on which `object` stands with its middle over a point and its bottom at a height (m): the first of those on which
+    /// it [may stand](ProblemFile::allowed_surfaces) that is not farther than `within_m` above or below.
+    pub fn surface_under(
+        &self,
+        object: &Object,
+        scene: &Scene,
+        (at, bottom_m): (&Point2<f64>, f64),
+        within_m: f64,
+    ) -> Option<String> {
+        let carries = |name: &&str| {
+            scene
+                .surface(name)
+                .is_some_and(|surface| (surface.height() - bottom_m).abs() <= within_m && surface.contains(at))
+        };
+        self.allowed_surfaces(object).into_iter().find(carries).map(str::to_owned)
+    }
 }
 
 impl ShapeSpec {

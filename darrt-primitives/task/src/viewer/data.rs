@@ -320,8 +320,29 @@ pub struct ClearanceData {
     pub points: [[f64; 3]; 2],
 }
 
+impl JointTrack {
+    /// The values of a joint at every waypoint, rounded; `None` if it stays where it is.
+    pub fn of(variable: usize, values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let values: Vec<f64> = values.into_iter().map(rounded).collect();
+        moves(&values).then_some(Self { variable, values })
+    }
+}
+
+impl ObjectTrack {
+    /// The poses of an object at every waypoint, rounded; `None` if it stays where it is.
+    pub fn of<'a>(object: usize, poses: impl IntoIterator<Item = &'a Isometry3<f64>>) -> Option<Self> {
+        let poses: Vec<PoseData> = poses.into_iter().map(pose).collect();
+        moves(&poses).then_some(Self { object, poses })
+    }
+}
+
+/// Does something change from one waypoint to the next?
+pub(super) fn moves<T: PartialEq>(values: &[T]) -> bool {
+    values.windows(2).any(|pair| pair.first() != pair.last())
+}
+
 /// A number to a hundredth of a millimetre, or of a milliradian.
-pub(crate) fn rounded(value: f64) -> f64 {
+pub fn rounded(value: f64) -> f64 {
     to(value, 1e5)
 }
 
@@ -331,7 +352,7 @@ pub(super) fn to(value: f64, steps: f64) -> f64 {
 }
 
 /// A pose as data.
-pub(crate) fn pose(pose: &Isometry3<f64>) -> PoseData {
+pub fn pose(pose: &Isometry3<f64>) -> PoseData {
     let [x, y, z] = pose.translation.vector.into();
     let q = pose.rotation.quaternion();
     let [x, y, z] = [x, y, z].map(rounded);

@@ -5,7 +5,7 @@ use darrt_primitives::manipulator::world_from_base;
 use nalgebra::Isometry3;
 
 use super::ViewerError;
-use super::data::{self, HoldData, JointTrack, ObjectTrack, StartData, StepData, rounded};
+use super::data::{self, HoldData, JointTrack, ObjectTrack, StartData, StepData, moves, rounded};
 use super::scene::RobotModel;
 use crate::clock::check::check;
 use crate::clock::waypoint_times_s;
@@ -124,14 +124,13 @@ impl Act<'_> {
         let base: Vec<_> = self.moments.iter().map(|moment| moment.base.map(rounded)).collect();
         let joint = |variable: usize| {
             let values = self.moments.iter().map(|moment| moment.joints.get(variable).copied().unwrap_or_default());
-            let values: Vec<f64> = values.map(rounded).collect();
-            moves(&values).then_some(JointTrack { variable, values })
+            JointTrack::of(variable, values)
         };
         let object = |object: usize| {
-            let poses = self.moments.iter().filter_map(|moment| moment.objects.get(object)).map(data::pose);
-            let poses: Vec<_> = poses.collect();
-            (moves(&poses) && self.holds.is_none_or(|(held, _)| held != object))
-                .then_some(ObjectTrack { object, poses })
+            // What is held follows from the hand.
+            let is_held = self.holds.is_some_and(|(held, _)| held == object);
+            let poses = self.moments.iter().filter_map(|moment| moment.objects.get(object));
+            if is_held { None } else { ObjectTrack::of(object, poses) }
         };
         let contacts = self.step.allowed_contacts.iter();
         let hold =
@@ -242,8 +241,4 @@ const fn reason(reason: ContactReason) -> &'static str {
         ContactReason::Retreat => "retreat",
         ContactReason::Support => "support",
     }
-}
-
-fn moves<T: PartialEq>(values: &[T]) -> bool {
-    values.windows(2).any(|pair| pair.first() != pair.last())
 }

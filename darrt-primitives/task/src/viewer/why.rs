@@ -1,7 +1,6 @@
 //! What the page says of a search that found no plan.
 
-use std::collections::BTreeMap;
-
+use darrt_core::observe::accounts::Accounts;
 use serde::{Deserialize, Serialize};
 
 use super::data::StartData;
@@ -67,14 +66,13 @@ pub struct NearestData {
 }
 
 /// The pairs that were most often in the way, and how often all others were.
-pub fn blocks(counts: &BTreeMap<(String, String), u64>) -> (Vec<BlockData>, u64) {
-    let mut all: Vec<_> = counts.iter().collect();
-    all.sort_by(|a, b| b.1.cmp(a.1).then_with(|| a.0.cmp(b.0)));
-    let others = all.iter().skip(PAIRS).map(|(_, count)| **count).sum();
-    let told = all.into_iter().take(PAIRS).map(|((first, second), count)| BlockData {
+pub fn blocks(accounts: &Accounts) -> (Vec<BlockData>, u64) {
+    let worst = accounts.worst_blocks(PAIRS);
+    let others = accounts.blocks.values().sum::<u64>() - worst.iter().map(|(_, count)| count).sum::<u64>();
+    let told = worst.into_iter().map(|((first, second), count)| BlockData {
         first: first.clone(),
         second: second.clone(),
-        count: *count,
+        count,
     });
     (told.collect(), others)
 }
@@ -85,8 +83,9 @@ mod tests {
 
     #[test]
     fn the_pairs_most_in_the_way_come_first_and_none_is_lost() {
-        let counts: BTreeMap<_, _> = (0..200).map(|i| ((format!("a{i}"), "b".to_owned()), i)).collect();
-        let (told, others) = blocks(&counts);
+        let mut accounts = Accounts::default();
+        accounts.blocks = (0..200).map(|i| ((format!("a{i}"), "b".to_owned()), i)).collect();
+        let (told, others) = blocks(&accounts);
         assert_eq!((told.len(), told[0].count, told[0].first.as_str()), (PAIRS, 199, "a199"));
         assert_eq!(told.iter().map(|pair| pair.count).sum::<u64>() + others, (0..200).sum::<u64>());
     }

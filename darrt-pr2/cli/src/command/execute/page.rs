@@ -2,11 +2,11 @@
 
 use darrt_execute::RunReport;
 use darrt_execute::recording::{Frame, Recording};
-use darrt_task::picture::{self, Extent, Story};
+use darrt_task::picture::{self, Extent, Story, palette};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::robot::RobotFacts;
 use darrt_task::viewer::data::{
-    JointTrack, ObjectData, ObjectTrack, PartData, PoseData, ShapeData, StartData, StepData, ViewerData,
+    JointTrack, ObjectData, ObjectTrack, PartData, ShapeData, StartData, StepData, ViewerData, pose, rounded,
 };
 use darrt_task::viewer::{self, RobotModel};
 use nalgebra::Isometry3;
@@ -29,8 +29,12 @@ pub(super) fn file(
     recording: &Recording,
 ) -> Result<String, Failure> {
     let robot = RobotModel::of(facts)?;
-    let planned = viewer::of_plan(plan, "", &robot)?;
-    let colour = |name: &str| planned.steps.iter().find(|step| step.name == name).map_or(OTHER, |step| &step.colour);
+    let story = Story::of_plan(plan, facts)?;
+    let planned = viewer::of_problem(&plan.problem, &plan.start, &robot)?;
+    let colour = |name: &str| {
+        let step = story.steps.iter().find(|step| step.primitive.as_str() == name);
+        step.map_or(OTHER, |step| palette::of(step.act))
+    };
     let mut objects = planned.objects.clone();
     let marks = planned.objects.iter().map(|object| {
         let part = PartData { shape: needle(), pose: [0.0, 0.0, NEEDLE_M[1] / 2.0, 0.0, 0.0, 0.0, 1.0] };
@@ -44,7 +48,8 @@ pub(super) fn file(
     objects.extend(marks);
     let mut start = planned.start.clone();
     if let Some(first) = recording.frames.first() {
-        start = StartData { base: first.base, joints: first.joints.clone(), objects: poses(first) };
+        start =
+            StartData { base: first.base, joints: first.joints.clone(), objects: placed(first).map(pose).collect() };
     }
     let steps = (0..recording.steps.len()).filter_map(|index| {
         let step = recording.steps.get(index)?;
@@ -53,14 +58,14 @@ pub(super) fn file(
         of_step(recording.frames_of(index), name, colour(&step.primitive))
     });
     let data = ViewerData { note: note(report), objects, start, steps: steps.collect(), ..planned };
-    let figure = picture::draw(&Story::of_plan(plan, facts)?, Extent::Whole);
+    let figure = picture::draw(&story, Extent::Whole);
     Ok(viewer::page(&data, &figure)?)
 }
 
 fn note(report: &RunReport) -> String {
     let ends = report.objects.iter().map(|end| format!("{} {:.1} mm off", end.object, 1000.0 * end.off_m));
     let ends = ends.collect::<Vec<_>>().join(", ");
-    let how = if report.is_success { "succeeded".to_owned() } else { "failed".to_owned() };
+    let how = if report.is_success { "succeeded" } else { "failed" };
     let first =
         report.departure.as_ref().map_or_else(String::new, |departure| format!("; {}", super::sentence(departure)));
     format!("executed, run {}: {how}, {ends}{first}. Needles show where the plan has the objects.", report.run)
@@ -70,20 +75,9 @@ fn needle() -> ShapeData {
     ShapeData::Cylinder { radius: NEEDLE_M[0], length: NEEDLE_M[1] }
 }
 
-/// A number to a hundredth of a millimetre, or of a milliradian.
-fn rounded(value: f64) -> f64 {
-    (value * 1e5).round() / 1e5 + 0.0
-}
-
-fn pose(pose: &Isometry3<f64>) -> PoseData {
-    let [x, y, z] = pose.translation.vector.into();
-    let q = pose.rotation.quaternion();
-    [x, y, z, q.i, q.j, q.k, q.w].map(rounded)
-}
-
-/// The objects, then their marks.
-fn poses(frame: &Frame) -> Vec<PoseData> {
-    frame.objects.iter().chain(&frame.planned).map(pose).collect()
+/// Where the objects are, then their marks.
+fn placed(frame: &Frame) -> impl Iterator<Item = &Isometry3<f64>> {
+    frame.objects.iter().chain(&frame.planned)
 }
 
 fn of_step(frames: &[Frame], name: String, colour: &str) -> Option<StepData> {
@@ -92,15 +86,9 @@ fn of_step(frames: &[Frame], name: String, colour: &str) -> Option<StepData> {
         return None;
     }
     let joint = |variable: usize| {
-        let values =
-            frames.iter().filter_map(|frame| frame.joints.get(variable).copied().map(rounded)).collect::<Vec<_>>();
-        moves(&values).then_some(JointTrack { variable, values })
+        JointTrack::of(variable, frames.iter().filter_map(|frame| frame.joints.get(variable).copied()))
     };
-    let placed: Vec<_> = frames.iter().map(poses).collect();
-    let object = |object: usize| {
-        let poses: Vec<_> = placed.iter().filter_map(|placed| placed.get(object).copied()).collect();
-        moves(&poses).then_some(ObjectTrack { object, poses })
-    };
+    let object = |object: usize| ObjectTrack::of(object, frames.iter().filter_map(|frame| placed(frame).nth(object)));
     Some(StepData {
         name,
         colour: colour.to_owned(),
@@ -114,8 +102,4 @@ fn of_step(frames: &[Frame], name: String, colour: &str) -> Option<StepData> {
         objects: (0..2 * first.objects.len()).filter_map(object).collect(),
         clearance: Vec::new(),
     })
-}
-
-fn moves<T: PartialEq>(values: &[T]) -> bool {
-    values.windows(2).any(|pair| pair.first() != pair.last())
 }
