@@ -60,8 +60,8 @@ fn extend(c: &mut Criterion) {
     let draw = |i| strategy.sampler.sample(problem.domain(), problem.goal(), &mut stream(i));
     let targets: Vec<_> = (0..COUNT).map(draw).collect();
     let nodes = grown(&prepared, &strategy, 100, 64);
-    let (options, reroute) = (&strategy.extend, strategy.reroute.as_deref());
-    let extender = Extender { problem, options, reroute, interrupt: Interrupt::NEVER };
+    let (options, local_repair) = (&strategy.extend, strategy.local_repair.as_deref());
+    let extender = Extender { problem, options, local_repair, interrupt: Interrupt::NEVER };
     let mut group = c.benchmark_group("extend");
     group.sample_size(20);
     group.throughput(Throughput::Elements(COUNT));

@@ -73,9 +73,9 @@ fn rolls(arm: &Arm, q: &ArmConfiguration) -> Row {
 fn first_free(group: &mut BenchmarkGroup<'_, WallTime>) {
     let room = Room::new();
     let robot = room.world.manipulator();
-    let surroundings = room.world.surroundings();
+    let collision_scene = room.world.collision_scene();
     let contacts = Contacts::default();
-    let is_free = |state: &WorldState| surroundings.check(robot, state, &contacts).is_ok();
+    let is_free = |state: &WorldState| collision_scene.check(robot, state, &contacts).is_ok();
     let mut states: Vec<_> =
         room.states(20 * COUNT).into_iter().filter(is_free).take(usize::try_from(COUNT).unwrap()).collect();
     assert_eq!(states.len() as u64, COUNT);

@@ -1,15 +1,15 @@
 //! The arm of a PR2 among a table and ten boxes: pairs of free configurations.
 
 use darrt_core::domain::Domain as _;
+use darrt_core::local_repair::LocalRepair as _;
 use darrt_core::motion::Instance;
-use darrt_core::reroute::Reroute as _;
 use darrt_core::space::ComponentSpace as _;
 use darrt_core::state::ComponentSet;
 use darrt_core::validity::Validity as _;
 use darrt_pr2::problems::builtin;
 use darrt_pr2::{World, WorldState};
 use darrt_primitives::arm_motion::{ArmMotion, Carried, Waypoint};
-use darrt_primitives::detour::Detour;
+use darrt_primitives::local_repair::TransitRepair;
 use darrt_primitives::manipulator::{Configuration, Manipulator as _};
 use darrt_primitives::mode::Contacts;
 use darrt_primitives::primitive::ARM_TRANSIT;
@@ -89,7 +89,7 @@ impl Boxes {
         if is_free(&straight) {
             return Some(straight);
         }
-        let around = Detour::default().reroute(m, &self.validity, 0, &straight, from, &mut stream(seed)).ok()?;
+        let around = TransitRepair::default().repair(m, &self.validity, 0, &straight, from, &mut stream(seed)).ok()?;
         is_free(&around).then_some(around)
     }
 }

@@ -56,10 +56,10 @@ pub fn drives(plan: &PlanFile, yardstick: &Yardstick) -> Result<Vec<Drive>, Stri
     for (index, step) in plan.steps.iter().enumerate() {
         let bases: Vec<_> = step.waypoints.iter().map(|waypoint| waypoint.base).collect();
         let (Some(from), Some(to)) = (step.waypoints.last(), bases.last()) else { continue };
-        let legs = bases.windows(2).map(|pair| (pair[0], pair[1]));
+        let segments = bases.windows(2).map(|pair| (pair[0], pair[1]));
         let metres = |a: &[f64; 3], b: &[f64; 3]| (b[0] - a[0]).hypot(b[1] - a[1]);
-        let length_m: f64 = legs.clone().map(|(a, b)| metres(&a, &b)).sum();
-        let turn_deg = legs.map(|(a, b)| turn(a[2], b[2]).abs().to_degrees()).sum();
+        let length_m: f64 = segments.clone().map(|(a, b)| metres(&a, &b)).sum();
+        let turn_deg = segments.map(|(a, b)| turn(a[2], b[2]).abs().to_degrees()).sum();
         if length_m == 0.0 && turn_deg == 0.0 {
             continue;
         }

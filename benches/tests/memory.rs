@@ -67,7 +67,7 @@ fn a_motion_is_evaluated_and_checked_without_allocating_per_state() {
     let (prepared, strategy) = prepared();
     let problem = &prepared.problem;
     let m = problem.domain();
-    let extender = Extender { problem, options: &strategy.extend, reroute: None, interrupt: Interrupt::NEVER };
+    let extender = Extender { problem, options: &strategy.extend, local_repair: None, interrupt: Interrupt::NEVER };
     let mut lengths_m = Vec::new();
     for (i, to) in (0..).zip(trees::targets(problem, &strategy, 40)) {
         let reached = extender.extend(problem.start(), &to, &mut stream(i)).reached;

@@ -5,7 +5,7 @@ use darrt_benches::room::prepared;
 use darrt_benches::trees;
 use darrt_core::distance::{Distance, Euclidean, ExactTour, GreedyVisit};
 use darrt_core::laws::domain::{POINT, REACH_AT_LEAST};
-use darrt_core::laws::space::{SHADOW, SHADOW_ALIKE};
+use darrt_core::laws::space::{COORDINATES, COORDINATES_ALIKE};
 use darrt_core::laws::{SpaceClaims, check_domain, check_nearest};
 use darrt_core::tree::Tree;
 use darrt_core::variants::Weighted;
@@ -31,7 +31,7 @@ fn points_reach_and_shadows_bound_from_below() {
         let [a, b, c] = three else { continue };
         let checked = check_domain(prepared.problem.domain(), &SpaceClaims::default(), [a, b, c], [0.3, 0.7], i);
         // The other laws have tests of their own.
-        let laws = [POINT, REACH_AT_LEAST, SHADOW, SHADOW_ALIKE];
+        let laws = [POINT, REACH_AT_LEAST, COORDINATES, COORDINATES_ALIKE];
         if let Some(broken) = checked.err().filter(|broken| laws.contains(&broken.law)) {
             panic!("{broken}");
         }

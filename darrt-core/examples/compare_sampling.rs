@@ -27,7 +27,7 @@ fn main() -> Result<(), Error> {
                 sampler: Box::new(GoalBiased::new(sampler(sampling)?, 0.2)?),
                 distance: Box::new(GreedyVisit),
                 extend: ExtendOptions::default(),
-                reroute: None,
+                local_repair: None,
                 try_penalty_m: 0.0,
                 shorten: darrt_core::shorten::ShortenOptions::default(),
                 improve: None,

@@ -12,7 +12,7 @@ use crate::state::{ComponentId, ComponentSet, ObjectConfig, ObjectId, RobotConfi
 /// enum space.
 ///
 /// # Laws
-/// `reach` and `hop` are finite and non-negative. Two points of an object lie no farther apart than its two
+/// `reach` and `travel_between` are finite and non-negative. Two points of an object lie no farther apart than its two
 /// configurations, and `reach_at_least` of the gap between working point and object is at most `reach`. A motion `may_go_on`
 /// in the mode that it was made for.
 ///
@@ -45,7 +45,7 @@ use crate::state::{ComponentId, ComponentSet, ObjectConfig, ObjectId, RobotConfi
 ///         (at[0] - cart[0]).abs()
 ///     }
 ///
-///     fn hop(&self, (_, from): (ObjectId, &[f64; 1]), (_, to): (ObjectId, &[f64; 1])) -> f64 {
+///     fn travel_between(&self, (_, from): (ObjectId, &[f64; 1]), (_, to): (ObjectId, &[f64; 1])) -> f64 {
 ///         (to[0] - from[0]).abs()
 ///     }
 /// }
@@ -131,5 +131,5 @@ pub trait Domain: Sized + Send + Sync + 'static {
     }
 
     /// Metres the working point travels from acting on one object to acting on another.
-    fn hop(&self, from: (ObjectId, &ObjectConfig<Self>), to: (ObjectId, &ObjectConfig<Self>)) -> f64;
+    fn travel_between(&self, from: (ObjectId, &ObjectConfig<Self>), to: (ObjectId, &ObjectConfig<Self>)) -> f64;
 }

@@ -9,13 +9,13 @@ use smallvec::SmallVec;
 use crate::budget::Interrupt;
 use crate::domain::Domain;
 use crate::error::{Error, in_range};
+use crate::local_repair::LocalRepair;
 use crate::motion::Instance;
 use crate::observe::accounts::Bucket;
 use crate::partial::PartialState;
 use crate::path::{Path, PathEnd, Trial, path};
 use crate::primitive::Infeasible;
 use crate::problem::Problem;
-use crate::reroute::Reroute;
 use crate::state::{ComponentSet, State};
 use crate::validity::{Blame, BlockKind, FreePrefix};
 
@@ -28,7 +28,7 @@ pub struct ExtendOptions {
     /// At most this many primitives in one PATH (the authors' software used 100).
     pub max_depth: usize,
     /// Motions are taken as free if their ends are, and judged as a whole when a plan needs them
-    /// ([`settle`](crate::settle::settle)); only their ends become nodes. Plans are then repaired while they are made
+    /// ([`validate_steps`](crate::lazy_validation::validate_steps)); only their ends become nodes. Plans are then repaired while they are made
     /// shorter, so [`Strategy::shorten`](crate::search::Strategy::shorten) should allow some extensions.
     pub defer: bool,
     /// Metres of travel after which an extension ends, as in a classic RRT; positive. `None`: it goes as far as PATH leads.
@@ -94,7 +94,7 @@ pub fn extend_towards<D: Domain>(
     to: &PartialState<D>,
     rng: &mut dyn Rng,
 ) -> Extension<D> {
-    let extender = Extender { problem, options, reroute: None, interrupt: Interrupt::NEVER };
+    let extender = Extender { problem, options, local_repair: None, interrupt: Interrupt::NEVER };
     extender.extend(from, to, rng)
 }
 
@@ -105,7 +105,7 @@ pub struct Extender<'a, D: Domain> {
     /// How extensions are discretised.
     pub options: &'a ExtendOptions,
     /// How a way around is looked for where a motion is blocked; `None`: it is not.
-    pub reroute: Option<&'a dyn Reroute<D>>,
+    pub local_repair: Option<&'a dyn LocalRepair<D>>,
     /// Asked before every instance of an extension.
     pub interrupt: Interrupt<'a>,
 }
@@ -127,7 +127,7 @@ impl<D: Domain> std::fmt::Debug for Extender<'_, D> {
 impl<D: Domain> Extender<'_, D> {
     /// Extends `from` towards `to`. Pure but for `rng` and the interrupt.
     pub fn extend(&self, from: &State<D>, to: &PartialState<D>, rng: &mut dyn Rng) -> Extension<D> {
-        let Self { problem, options, reroute, interrupt } = *self;
+        let Self { problem, options, local_repair, interrupt } = *self;
         let m = problem.domain();
         let e = path(m, problem.primitives(), from, to, options.max_depth, rng);
         let mut prefixes = Prefixes { problem, e: &e, known: e.instances.iter().map(|_| None).collect() };
@@ -156,9 +156,9 @@ impl<D: Domain> Extender<'_, D> {
             }
             let mut free = prefixes.of(index);
             if free.blame.is_some()
-                && let Some(r) = reroute.filter(|r| r.is_free_to_turn(problem.domain(), &instance))
-                && prefixes.is_worth_a_detour(r, index)
-                && let Ok(around) = r.reroute(m, problem.validity(), 0, &instance, start, rng)
+                && let Some(r) = local_repair.filter(|r| r.is_free_to_turn(problem.domain(), &instance))
+                && prefixes.is_worth_a_repair(r, index)
+                && let Ok(around) = r.repair(m, problem.validity(), 0, &instance, start, rng)
             {
                 instance = Arc::new(around);
                 free = problem.validity().free_prefix(m, &instance, start);
@@ -225,12 +225,12 @@ impl<D: Domain> Prefixes<'_, D> {
 
     /// Does the chain from `index` on move an object, and is what it is bound to pass valid: the end of every instance
     /// that may turn aside, and the beginning of every one that may not? If not, a way around leads nowhere that matters,
-    /// and it is dear to find.
-    fn is_worth_a_detour(&mut self, reroute: &dyn Reroute<D>, index: usize) -> bool {
+    /// and it is expensive to find.
+    fn is_worth_a_repair(&mut self, local_repair: &dyn LocalRepair<D>, index: usize) -> bool {
         let m = self.problem.domain();
         let rest = self.e.instances.iter().zip(self.e.states.iter().skip(1)).enumerate().skip(index);
         let moves_object = |instance: &Instance<D>| !instance.moves.is_subset_of(ComponentSet::ROBOT);
-        let is_bound = |instance: &Instance<D>| !reroute.is_free_to_turn(m, instance);
+        let is_bound = |instance: &Instance<D>| !local_repair.is_free_to_turn(m, instance);
         rest.clone().any(|(_, ((_, instance), _))| moves_object(instance))
             && rest
                 .clone()

@@ -12,7 +12,7 @@
 //! | [`Goal`](crate::goal::Goal) | [`check_goal`] | [`goal`] |
 //! | [`Sampler`](crate::sample::Sampler) | [`check_sampler`], [`check_sampler_covers`] | [`sampler`] |
 //! | [`Verifier`](crate::verify::Verifier) | [`check_verifier`] | [`verifier`] |
-//! | [`Reroute`](crate::reroute::Reroute) | [`check_reroute`] | [`reroute`] |
+//! | [`LocalRepair`](crate::local_repair::LocalRepair) | [`check_local_repair`] | [`local_repair`] |
 //! | [`ExecutionCost`](crate::cost::ExecutionCost) | [`check_cost`] | [`cost`] |
 //! | all of them together | [`check_planner`], [`check_accounts`], [`check_cancel`] | [`planner`] |
 //! | whatever you brought | [`check_everything`], [`check_thoroughly`] | all |
@@ -44,12 +44,12 @@ pub mod domain;
 pub mod everything;
 mod feed;
 pub mod goal;
+pub mod local_repair;
 pub mod motion;
 pub mod nearest;
 pub mod partial;
 pub mod planner;
 pub mod primitive;
-pub mod reroute;
 pub mod sampler;
 pub mod space;
 pub mod validity;
@@ -61,12 +61,12 @@ pub use distance::{DistanceClaims, check_distance, check_lower_bound, check_metr
 pub use domain::check_domain;
 pub use everything::{Effort, Report, Subjects, check_everything, check_thoroughly};
 pub use goal::check_goal;
+pub use local_repair::check_local_repair;
 pub use motion::{MotionClaims, check_instance, check_motion};
 pub use nearest::check_nearest;
 pub use partial::check_partial;
 pub use planner::{check_accounts, check_cancel, check_planner};
 pub use primitive::{PrimitiveClaims, Tried, check_contacts, check_primitive, try_primitive};
-pub use reroute::check_reroute;
 pub use sampler::{check_sampler, check_sampler_covers};
 pub use space::{SpaceClaims, check_component_space, check_covering, check_space_covers};
 pub use validity::{ValidityClaims, check_against_oracle, check_by_oracle, check_enlarged, check_validity};
@@ -190,7 +190,7 @@ pub fn all() -> impl Iterator<Item = &'static str> {
         sampler::LAWS,
         planner::LAWS,
         verifier::LAWS,
-        reroute::LAWS,
+        local_repair::LAWS,
         cost::LAWS,
     ];
     groups.into_iter().flatten().copied()

@@ -6,6 +6,6 @@
 //! | [`pruned`] | a measure that can be bounded from below by what [`bounds::Ways`] tells |
 
 pub mod bounds;
+pub(crate) mod coordinate_index;
 pub mod linear;
-pub(crate) mod mirror;
 pub mod pruned;

@@ -5,7 +5,7 @@
 //! | retrace | the same manipulations without what does not lead to the goal | [`shorten`](crate::shorten) |
 //! | improve | less time to carry it out, all motions judged | [`mod@improve`](crate::improve) |
 //! | mend | motions that were taken as free are judged; from one that is blocked the plan goes on another way | [`shorten`](crate::shorten) |
-//! | settle | what was found is judged as it is | [`mod@settle`](crate::settle) |
+//! | validate_steps | what was found is judged as it is | [`validate_steps`](crate::lazy_validation::validate_steps) |
 //! | prove | the verifier replays it | [`verify`](crate::verify) |
 //!
 //! The first stage that ends in a plan which the verifier accepts is the last one.
@@ -14,10 +14,10 @@ use crate::budget::{Interrupt, Stop};
 use crate::domain::Domain;
 use crate::extend::Extender;
 use crate::improve::improve;
+use crate::lazy_validation::{NotValidated, validate_steps};
 use crate::plan::Plan;
 use crate::random::{Purpose, stream};
 use crate::search::Strategy;
-use crate::settle::{Unsettled, settle};
 use crate::shorten::{mended, retraced};
 use crate::verify::{Refusal, Solution};
 
@@ -26,7 +26,7 @@ pub(crate) enum Unproved<D: Domain> {
     /// The verifier refuses it.
     Refused(Refusal),
     /// A motion of it is blocked, or it was given up.
-    Unsettled(Unsettled<D>),
+    NotValidated(NotValidated<D>),
 }
 
 /// The stages, for plans that one iteration finds.
@@ -65,8 +65,8 @@ impl<D: Domain> Pipeline<'_, D> {
         if let Some(solution) = short.and_then(|short| self.proved(short).ok()) {
             return Ok(solution);
         }
-        let steps = settle(&self.extender, found.start(), found.steps().iter().cloned(), rng);
-        let steps = steps.map_err(Unproved::Unsettled)?;
+        let steps = validate_steps(&self.extender, found.start(), found.steps().iter().cloned(), rng);
+        let steps = steps.map_err(Unproved::NotValidated)?;
         self.proved(Plan::new(found.start().clone(), steps)).map_err(Unproved::Refused)
     }
 

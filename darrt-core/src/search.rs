@@ -13,15 +13,15 @@ use crate::distance::Distance;
 use crate::domain::Domain;
 use crate::extend::{ExtendOptions, Extender, Extension};
 use crate::improve::Improvement;
+use crate::lazy_validation::NotValidated;
+use crate::local_repair::LocalRepair;
 use crate::observe::accounts::Accounts;
 use crate::partial::PartialState;
 use crate::pipeline::{Pipeline, Unproved};
 use crate::plan::Plan;
 use crate::problem::Problem;
 use crate::random::{Purpose, stream};
-use crate::reroute::Reroute;
 use crate::sample::Sampler;
-use crate::settle::Unsettled;
 use crate::shorten::ShortenOptions;
 use crate::state::State;
 use crate::tree::{Edge, NodeId, Tree};
@@ -45,7 +45,7 @@ pub struct Strategy<D: Domain> {
     /// How EXTENDTOWARDS discretises.
     pub extend: ExtendOptions,
     /// What is tried when a motion is blocked; `None`: the blocked motion is cut short, as in the paper.
-    pub reroute: Option<Box<dyn Reroute<D>>>,
+    pub local_repair: Option<Box<dyn LocalRepair<D>>>,
     /// Metres by which a node, and every other in which the objects stand as in it, counts as farther away after each
     /// extension from it; at least 0. Zero is the plain arg min of Algorithm 1, which asks the nearest placement again and
     /// again even where nothing leads on (paper section 6.2).
@@ -158,7 +158,7 @@ impl<'p, D: Domain> Darrt<'p, D> {
     fn extender(&self) -> Extender<'_, D> {
         let Self { problem, strategy, interrupt, .. } = self;
         let interrupt = *interrupt;
-        Extender { problem, options: &strategy.extend, reroute: strategy.reroute.as_deref(), interrupt }
+        Extender { problem, options: &strategy.extend, local_repair: strategy.local_repair.as_deref(), interrupt }
     }
 
     /// One iteration of the loop of Algorithm 1.
@@ -233,7 +233,7 @@ impl<'p, D: Domain> Darrt<'p, D> {
             if is_goal {
                 match self.prove(id) {
                     Ok(solution) => step.solution = Some(solution),
-                    Err(Unproved::Unsettled(Unsettled::Blocked(instance, blame))) => {
+                    Err(Unproved::NotValidated(NotValidated::Blocked(instance, blame))) => {
                         let removed = self.tree.prune(self.problem.domain(), id, &instance);
                         step.withdrawn = Some((removed, blame));
                     }
@@ -292,12 +292,12 @@ impl<'p, D: Domain> Darrt<'p, D> {
                 step.refusal = Some(refusal);
                 0
             }
-            Unproved::Unsettled(Unsettled::Blocked(instance, blame)) => {
+            Unproved::NotValidated(NotValidated::Blocked(instance, blame)) => {
                 let removed = self.tree.prune(self.problem.domain(), node, &instance);
                 self.accounts.withdraw(removed, &blame);
                 removed
             }
-            Unproved::Unsettled(Unsettled::Cancelled) => 0,
+            Unproved::NotValidated(NotValidated::Cancelled) => 0,
         }
     }
 

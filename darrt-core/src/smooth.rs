@@ -15,10 +15,10 @@ use rand::{Rng, RngExt};
 use crate::cost::ExecutionCost;
 use crate::domain::Domain;
 use crate::extend::{ExtendOptions, Extender};
+use crate::local_repair::LocalRepair;
 use crate::motion::{Section, Spliced};
 use crate::partial::PartialState;
 use crate::plan::{Plan, Step};
-use crate::reroute::Reroute;
 use crate::shorten::joined;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 
@@ -47,35 +47,36 @@ pub fn smooth<D: Domain>(
     // that needs a way around is none.
     let whole = ExtendOptions { step_m: None, defer: true, ..*extender.options };
     let mut smoother = Smoother {
-        extender: Extender { options: &whole, reroute: None, ..*extender },
-        may_turn: extender.reroute,
+        extender: Extender { options: &whole, local_repair: None, ..*extender },
+        may_turn: extender.local_repair,
         cost,
         start: plan.start(),
-        legs: Vec::new(),
+        timed_steps: Vec::new(),
         left: attempts,
         has_gained: false,
     };
-    smoother.legs = plan.steps().iter().map(|step| smoother.leg(step.clone())).collect();
+    smoother.timed_steps = plan.steps().iter().map(|step| smoother.timed_step(step.clone())).collect();
     smoother.drop_detours(rng);
     smoother.cut_corners(rng);
-    let Smoother { legs, has_gained, .. } = smoother;
-    has_gained.then(|| Plan::new(plan.start().clone(), legs.into_iter().map(|leg| leg.step).collect()))
+    let Smoother { timed_steps, has_gained, .. } = smoother;
+    has_gained
+        .then(|| Plan::new(plan.start().clone(), timed_steps.into_iter().map(|timed_step| timed_step.step).collect()))
 }
 
 /// A step, the parts of instances that it is made of, and the seconds that it takes.
-struct Leg<D: Domain> {
+struct TimedStep<D: Domain> {
     step: Step<D>,
     sections: Vec<Section<D>>,
     seconds: f64,
 }
 
-impl<D: Domain> Clone for Leg<D> {
+impl<D: Domain> Clone for TimedStep<D> {
     fn clone(&self) -> Self {
         Self { step: self.step.clone(), sections: self.sections.clone(), seconds: self.seconds }
     }
 }
 
-impl<D: Domain> Leg<D> {
+impl<D: Domain> TimedStep<D> {
     fn length(&self) -> f64 {
         self.step.instance.motion.length() * self.step.until
     }
@@ -113,46 +114,46 @@ impl<D: Domain> Leg<D> {
     }
 }
 
-/// A place on the plan: so many metres behind the beginning of a leg; 0 metres behind the last leg is the end.
+/// A place on the plan: so many metres behind the beginning of a step; 0 metres behind the last step is the end.
 #[derive(Debug, Clone, Copy)]
 struct Cut {
-    leg: usize,
+    timed_step: usize,
     metres: f64,
 }
 
 impl Cut {
-    const fn before(leg: usize) -> Self {
-        Self { leg, metres: 0.0 }
+    const fn before(timed_step: usize) -> Self {
+        Self { timed_step, metres: 0.0 }
     }
 }
 
 struct Smoother<'a, D: Domain> {
     extender: Extender<'a, D>,
     /// Knows which motions may turn aside.
-    may_turn: Option<&'a dyn Reroute<D>>,
+    may_turn: Option<&'a dyn LocalRepair<D>>,
     cost: &'a dyn ExecutionCost<D>,
     start: &'a State<D>,
-    legs: Vec<Leg<D>>,
+    timed_steps: Vec<TimedStep<D>>,
     /// Attempts that are left.
     left: usize,
     has_gained: bool,
 }
 
 impl<D: Domain> Smoother<'_, D> {
-    fn leg(&self, step: Step<D>) -> Leg<D> {
+    fn timed_step(&self, step: Step<D>) -> TimedStep<D> {
         let section = Section { instance: Arc::clone(&step.instance), from: 0.0, to: step.until };
         self.timed(step, vec![section])
     }
 
-    fn timed(&self, step: Step<D>, sections: Vec<Section<D>>) -> Leg<D> {
+    fn timed(&self, step: Step<D>, sections: Vec<Section<D>>) -> TimedStep<D> {
         let m = self.extender.problem.domain();
         let from = step.instance.at(m, 0.0, self.start);
         let seconds = self.cost.seconds(m, &step.instance, &from, step.until);
-        Leg { step, sections, seconds }
+        TimedStep { step, sections, seconds }
     }
 
     /// The step that runs `sections`, called, touching and moving what `like` does.
-    fn through(&self, sections: Vec<Section<D>>, like: &Step<D>) -> Option<Leg<D>> {
+    fn through(&self, sections: Vec<Section<D>>, like: &Step<D>) -> Option<TimedStep<D>> {
         if let [Section { instance, from: 0.0, to }] = sections.as_slice() {
             let step = Step { instance: Arc::clone(instance), until: *to, primitive: like.primitive };
             return Some(self.timed(step, sections));
@@ -165,15 +166,15 @@ impl<D: Domain> Smoother<'_, D> {
     /// Between the ends of steps at which the objects stand alike, or within one transfer; the farthest apart first. Also
     /// between those so near that a move and what it leads to lie between them.
     fn drop_detours(&mut self, rng: &mut dyn Rng) {
-        let mut span = self.legs.len();
+        let mut span = self.timed_steps.len();
         while span >= 2 {
             let mut first = 0;
-            while first + span <= self.legs.len() {
+            while first + span <= self.timed_steps.len() {
                 if !self.goes_on() {
                     return;
                 }
                 let (from, to) = (Cut::before(first), Cut::before(first + span));
-                let stands = self.state_before(from.leg).objects == self.state_before(to.leg).objects;
+                let stands = self.state_before(from.timed_step).objects == self.state_before(to.timed_step).objects;
                 // Behind a push the hand still stands at the object, where nothing but a push leads.
                 let behind = self.free_behind(to);
                 if stands || !self.carried(from, to).is_empty() {
@@ -186,23 +187,24 @@ impl<D: Domain> Smoother<'_, D> {
                 }
                 first += 1;
             }
-            span = (span - 1).min(self.legs.len());
+            span = (span - 1).min(self.timed_steps.len());
         }
     }
 
-    /// The middle of the leg behind a cut, if it moves the robot alone.
-    fn free_behind(&self, Cut { leg, .. }: Cut) -> Option<Cut> {
-        let next = self.legs.get(leg).filter(|next| next.may_be_cut() && next.length() > 0.0)?;
+    /// The middle of the step behind a cut, if it moves the robot alone.
+    fn free_behind(&self, Cut { timed_step, .. }: Cut) -> Option<Cut> {
+        let next = self.timed_steps.get(timed_step).filter(|next| next.may_be_cut() && next.length() > 0.0)?;
         let is_robot_alone = next.step.instance.moves.is_subset_of(ComponentSet::ROBOT);
-        is_robot_alone.then(|| Cut { leg, metres: next.length() / 2.0 })
+        is_robot_alone.then(|| Cut { timed_step, metres: next.length() / 2.0 })
     }
 
-    /// The objects that go along with the robot all the way between two cuts, if all legs there move the same.
+    /// The objects that go along with the robot all the way between two cuts, if all steps there move the same.
     fn carried(&self, from: Cut, to: Cut) -> Vec<ObjectId> {
-        let end = if to.metres > 0.0 { to.leg + 1 } else { to.leg };
-        let legs = self.legs.get(from.leg..end).unwrap_or_default();
-        let Some(moves) = legs.first().map(|first| first.step.instance.moves) else { return Vec::new() };
-        let is_one_transfer = legs.iter().all(|leg| leg.may_be_cut() && leg.step.instance.moves == moves);
+        let end = if to.metres > 0.0 { to.timed_step + 1 } else { to.timed_step };
+        let timed_steps = self.timed_steps.get(from.timed_step..end).unwrap_or_default();
+        let Some(moves) = timed_steps.first().map(|first| first.step.instance.moves) else { return Vec::new() };
+        let is_one_transfer =
+            timed_steps.iter().all(|timed_step| timed_step.may_be_cut() && timed_step.step.instance.moves == moves);
         let ids = (0..self.start.objects.len()).map(ObjectId::new);
         ids.filter(|id| is_one_transfer && moves.contains(ComponentId::Object(*id))).collect()
     }
@@ -210,7 +212,7 @@ impl<D: Domain> Smoother<'_, D> {
     /// Between places drawn by travel, near ones more often than far ones.
     fn cut_corners(&mut self, rng: &mut dyn Rng) {
         while self.goes_on() {
-            let total_m = length(&self.legs);
+            let total_m = length(&self.timed_steps);
             let from_m = rng.random_range(0.0..1.0) * total_m;
             let share: f64 = rng.random_range(0.0..1.0);
             let to_m = from_m + share * share * (total_m - from_m);
@@ -226,74 +228,80 @@ impl<D: Domain> Smoother<'_, D> {
     /// The place after `metres` of the plan; an end of the step where it may not be cut, and sometimes elsewhere.
     fn cut_at(&self, metres: f64, rng: &mut dyn Rng) -> Cut {
         let mut left_m = metres;
-        for (i, leg) in self.legs.iter().enumerate() {
-            let length_m = leg.length();
+        for (i, timed_step) in self.timed_steps.iter().enumerate() {
+            let length_m = timed_step.length();
             if left_m < length_m {
-                let stays = leg.may_be_cut() && rng.random_bool(0.5);
+                let stays = timed_step.may_be_cut() && rng.random_bool(0.5);
                 let nearest = Cut::before(if left_m < length_m / 2.0 { i } else { i + 1 });
-                return if stays { Cut { leg: i, metres: left_m } } else { nearest };
+                return if stays { Cut { timed_step: i, metres: left_m } } else { nearest };
             }
             left_m -= length_m;
         }
-        Cut::before(self.legs.len())
+        Cut::before(self.timed_steps.len())
     }
 
-    fn state_before(&self, leg: usize) -> State<D> {
-        let before = leg.checked_sub(1).and_then(|before| self.legs.get(before));
-        before.map_or_else(|| self.start.clone(), |leg| leg.end(self.extender.problem.domain(), self.start))
+    fn state_before(&self, timed_step: usize) -> State<D> {
+        let before = timed_step.checked_sub(1).and_then(|before| self.timed_steps.get(before));
+        before
+            .map_or_else(|| self.start.clone(), |timed_step| timed_step.end(self.extender.problem.domain(), self.start))
     }
 
     /// One attempt to go another way from `from` to `to`; was it better?
     fn replace(&mut self, from: Cut, to: Cut, rng: &mut dyn Rng) -> bool {
         self.left = self.left.saturating_sub(1);
-        let Some(legs) = self.rewritten(from, to, rng) else { return false };
-        let is_better = legs.len() <= self.legs.len() && seconds(&legs) < seconds(&self.legs) - LEAST_GAIN_S;
+        let Some(timed_steps) = self.rewritten(from, to, rng) else { return false };
+        let is_better = timed_steps.len() <= self.timed_steps.len()
+            && seconds(&timed_steps) < seconds(&self.timed_steps) - LEAST_GAIN_S;
         if is_better {
-            self.legs = legs;
+            self.timed_steps = timed_steps;
             self.has_gained = true;
         }
         is_better
     }
 
-    /// All legs, those between the cuts new; `None` if the new ones do not arrive, or are no shorter.
-    fn rewritten(&self, from: Cut, to: Cut, rng: &mut dyn Rng) -> Option<Vec<Leg<D>>> {
-        if from.leg > to.leg || (from.leg == to.leg && from.metres >= to.metres) {
+    /// All steps, those between the cuts new; `None` if the new ones do not arrive, or are no shorter.
+    fn rewritten(&self, from: Cut, to: Cut, rng: &mut dyn Rng) -> Option<Vec<TimedStep<D>>> {
+        if from.timed_step > to.timed_step || (from.timed_step == to.timed_step && from.metres >= to.metres) {
             return None;
         }
         let m = self.extender.problem.domain();
         let (before, _) = self.parts_of(from);
         let (until, after) = self.parts_of(to);
-        let here = before.as_ref().map_or_else(|| self.state_before(from.leg), |leg| leg.end(m, self.start));
-        let there = until.as_ref().map_or_else(|| self.state_before(to.leg), |leg| leg.end(m, self.start));
-        let is_end = to.leg >= self.legs.len();
+        let here = before
+            .as_ref()
+            .map_or_else(|| self.state_before(from.timed_step), |timed_step| timed_step.end(m, self.start));
+        let there =
+            until.as_ref().map_or_else(|| self.state_before(to.timed_step), |timed_step| timed_step.end(m, self.start));
+        let is_end = to.timed_step >= self.timed_steps.len();
         // What is carried follows the robot: named, it would be set down.
         let named = (0..there.objects.len()).map(ObjectId::new).filter(|id| !self.carried(from, to).contains(id));
         let named = named.filter_map(|id| Some((id, there.object(id)?.clone())));
         let target = PartialState::anywhere(m).with_robot(m, there.robot.clone());
         let target = named.fold(target, |target, (id, at)| target.with_object(id, at));
-        let old = self.legs.get(from.leg..to.leg)?;
-        // What the cuts leave of their legs is not replaced.
-        let kept_s = before.as_ref().map_or(0.0, |leg| leg.seconds);
-        let old_s = seconds(old) + until.as_ref().map_or(0.0, |leg| leg.seconds) - kept_s;
+        let old = self.timed_steps.get(from.timed_step..to.timed_step)?;
+        // What the cuts leave of their steps is not replaced.
+        let kept_s = before.as_ref().map_or(0.0, |timed_step| timed_step.seconds);
+        let old_s = seconds(old) + until.as_ref().map_or(0.0, |timed_step| timed_step.seconds) - kept_s;
         let arrives = |state: &State<D>| *state == there || is_end && self.is_goal(state);
         let new = self.way(&here, &target, arrives, old_s, rng)?;
 
         // The neighbours may be of the same kind as what is new.
-        let first = from.leg.saturating_sub(1);
-        let last = to.leg + usize::from(after.is_some());
-        let behind = (last + 1).min(self.legs.len());
-        let window = self.legs.get(first..from.leg)?.iter().cloned().chain(before).chain(new).chain(after);
-        let window = self.woven(window.chain(self.legs.get(last..behind)?.iter().cloned()));
-        let rest = self.legs.get(behind..)?.iter().cloned();
-        Some(self.legs.get(..first)?.iter().cloned().chain(window).chain(rest).collect())
+        let first = from.timed_step.saturating_sub(1);
+        let last = to.timed_step + usize::from(after.is_some());
+        let behind = (last + 1).min(self.timed_steps.len());
+        let window =
+            self.timed_steps.get(first..from.timed_step)?.iter().cloned().chain(before).chain(new).chain(after);
+        let window = self.woven(window.chain(self.timed_steps.get(last..behind)?.iter().cloned()));
+        let rest = self.timed_steps.get(behind..)?.iter().cloned();
+        Some(self.timed_steps.get(..first)?.iter().cloned().chain(window).chain(rest).collect())
     }
 
-    /// What the cut leg does before the cut and after it; `None` for nothing, and for a cut between two legs.
-    fn parts_of(&self, cut: Cut) -> (Option<Leg<D>>, Option<Leg<D>>) {
-        let leg = self.legs.get(cut.leg).filter(|_| cut.metres > 0.0);
-        let parts = leg.and_then(|leg| Some((leg, leg.split(cut.metres)?)));
-        let Some((leg, [before, after])) = parts else { return (None, None) };
-        (self.through(before, &leg.step), self.through(after, &leg.step))
+    /// What the cut step does before the cut and after it; `None` for nothing, and for a cut between two steps.
+    fn parts_of(&self, cut: Cut) -> (Option<TimedStep<D>>, Option<TimedStep<D>>) {
+        let timed_step = self.timed_steps.get(cut.timed_step).filter(|_| cut.metres > 0.0);
+        let parts = timed_step.and_then(|timed_step| Some((timed_step, timed_step.split(cut.metres)?)));
+        let Some((timed_step, [before, after])) = parts else { return (None, None) };
+        (self.through(before, &timed_step.step), self.through(after, &timed_step.step))
     }
 
     fn is_goal(&self, state: &State<D>) -> bool {
@@ -309,24 +317,24 @@ impl<D: Domain> Smoother<'_, D> {
         arrives: impl Fn(&State<D>) -> bool,
         old_s: f64,
         rng: &mut dyn Rng,
-    ) -> Option<Vec<Leg<D>>> {
+    ) -> Option<Vec<TimedStep<D>>> {
         if arrives(here) {
             return Some(Vec::new());
         }
         let mut reached = self.extender.extend(here, target, rng).reached;
         let last = reached.iter().position(|reached| arrives(&reached.state))?;
         reached.truncate(last + 1);
-        let legs: Vec<_> = joined(reached).into_iter().map(|step| self.leg(step)).collect();
+        let timed_steps: Vec<_> = joined(reached).into_iter().map(|step| self.timed_step(step)).collect();
         // Joined to its neighbours it may take one start and stop less on either side.
-        let pays = seconds(&legs) < old_s + 2.0 * self.cost.step_s();
-        (pays && self.is_free(here, &legs)).then_some(legs)
+        let pays = seconds(&timed_steps) < old_s + 2.0 * self.cost.step_s();
+        (pays && self.is_free(here, &timed_steps)).then_some(timed_steps)
     }
 
-    fn is_free(&self, here: &State<D>, legs: &[Leg<D>]) -> bool {
+    fn is_free(&self, here: &State<D>, timed_steps: &[TimedStep<D>]) -> bool {
         let (m, validity) = (self.extender.problem.domain(), self.extender.problem.validity());
         let mut here = here.clone();
-        legs.iter().all(|Leg { step, .. }| {
-            let turns = self.may_turn.is_some_and(|reroute| reroute.is_free_to_turn(m, &step.instance));
+        timed_steps.iter().all(|TimedStep { step, .. }| {
+            let turns = self.may_turn.is_some_and(|local_repair| local_repair.is_free_to_turn(m, &step.instance));
             let care = if turns { validity.most_care() } else { 0 };
             let free = validity.free_prefix_with(care, m, &step.instance, &here);
             step.instance.motion.at_into(m, step.until, &mut here);
@@ -334,28 +342,30 @@ impl<D: Domain> Smoother<'_, D> {
         })
     }
 
-    /// The same legs, those of one kind that follow on each other as one.
-    fn woven(&self, legs: impl Iterator<Item = Leg<D>>) -> Vec<Leg<D>> {
-        let mut woven: Vec<Leg<D>> = Vec::new();
-        for leg in legs {
-            match woven.last().and_then(|last| self.union(last, &leg)) {
+    /// The same steps, those of one kind that follow on each other as one.
+    fn woven(&self, timed_steps: impl Iterator<Item = TimedStep<D>>) -> Vec<TimedStep<D>> {
+        let mut woven: Vec<TimedStep<D>> = Vec::new();
+        for timed_step in timed_steps {
+            match woven.last().and_then(|last| self.union(last, &timed_step)) {
                 Some(union) => {
                     woven.pop();
                     woven.push(union);
                 }
-                None => woven.push(leg),
+                None => woven.push(timed_step),
             }
         }
         woven
     }
 
     /// Both as one, if they are of one kind, in one mode, and free as one.
-    fn union(&self, a: &Leg<D>, b: &Leg<D>) -> Option<Leg<D>> {
+    fn union(&self, a: &TimedStep<D>, b: &TimedStep<D>) -> Option<TimedStep<D>> {
         let m = self.extender.problem.domain();
         let (p, q) = (&*a.step.instance, &*b.step.instance);
         let is_one_kind = p.primitive == q.primitive && p.moves == q.moves && a.may_be_cut() && b.may_be_cut();
         let like = touching_more(a, b).filter(|_| is_one_kind)?;
-        let mode_of = |leg: &Leg<D>, share: f64| leg.step.instance.at(m, share * leg.step.until, self.start).mode;
+        let mode_of = |timed_step: &TimedStep<D>, share: f64| {
+            timed_step.step.instance.at(m, share * timed_step.step.until, self.start).mode
+        };
         let junction = a.end(m, self.start);
         let is_one_mode = mode_of(a, 0.5) == junction.mode && junction.mode == mode_of(b, 0.5);
         let begins_there = b.step.instance.at(m, 0.0, self.start) == junction;
@@ -370,8 +380,8 @@ impl<D: Domain> Smoother<'_, D> {
 }
 
 /// The one that may touch what the other may; `None` if neither is known to.
-fn touching_more<'a, D: Domain>(a: &'a Leg<D>, b: &'a Leg<D>) -> Option<&'a Leg<D>> {
-    let contacts = |leg: &'a Leg<D>| &leg.step.instance.contacts;
+fn touching_more<'a, D: Domain>(a: &'a TimedStep<D>, b: &'a TimedStep<D>) -> Option<&'a TimedStep<D>> {
+    let contacts = |timed_step: &'a TimedStep<D>| &timed_step.step.instance.contacts;
     let nothing = D::Contacts::default();
     if contacts(a) == contacts(b) || *contacts(a) == nothing {
         Some(b)
@@ -383,11 +393,11 @@ fn touching_more<'a, D: Domain>(a: &'a Leg<D>, b: &'a Leg<D>) -> Option<&'a Leg<
 }
 
 /// Metres of travel.
-fn length<D: Domain>(legs: &[Leg<D>]) -> f64 {
-    legs.iter().map(Leg::length).sum()
+fn length<D: Domain>(timed_steps: &[TimedStep<D>]) -> f64 {
+    timed_steps.iter().map(TimedStep::length).sum()
 }
 
 /// Seconds of execution.
-fn seconds<D: Domain>(legs: &[Leg<D>]) -> f64 {
-    legs.iter().map(|leg| leg.seconds).sum()
+fn seconds<D: Domain>(timed_steps: &[TimedStep<D>]) -> f64 {
+    timed_steps.iter().map(|timed_step| timed_step.seconds).sum()
 }

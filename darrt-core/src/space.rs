@@ -99,7 +99,7 @@ pub enum Place {
 /// - `interpolate(a, b, 0.0) == a` and `interpolate(a, b, 1.0) == b`, bit for bit; in between it stays in
 ///   the space and its distance to `a` never shrinks.
 /// - `sample` is contained in the space.
-/// - Between the shadows of two configurations, each coordinate of the groups that `overlay` takes over counted, lie at most
+/// - Between the index coordinates of two configurations, each coordinate of the groups that `overlay` takes over counted, lie at most
 ///   as many metres as between the first and the overlay.
 /// - `overlay(from, target, all groups) == target` and `overlay(from, target, none) == from`.
 ///
@@ -161,7 +161,7 @@ pub trait ComponentSpace: Send + Sync {
     /// Calls `mark` with the group and the value, in metres, of coordinates whose Euclidean distance is never above
     /// [`distance`](Self::distance): always as many, in the same order, of the same groups. They let the search for the
     /// nearest node pass over most of the tree. Default: none.
-    fn shadow(&self, _q: &Self::Config, _mark: &mut dyn FnMut(u32, f64)) {}
+    fn index_coordinates(&self, _q: &Self::Config, _mark: &mut dyn FnMut(u32, f64)) {}
 
     /// Calls `visit` with every number that `q` is made of, always as many and in the same order. The laws put NaN, infinities
     /// and the corners of the space there; nothing else asks. Default: the numbers of the types that

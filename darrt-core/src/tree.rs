@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::domain::Domain;
 use crate::motion::Instance;
-use crate::nearest::bounds::Mirrors;
-use crate::nearest::mirror::push_frugally;
+use crate::nearest::bounds::CoordinateIndices;
+use crate::nearest::coordinate_index::push_frugally;
 use crate::state::State;
 
 /// Index of a node in its tree.
@@ -71,12 +71,12 @@ struct Placement {
     /// The last of its nodes; `None` if it was taken back.
     last: Option<NodeId>,
     count: u32,
-    /// Penalties since the mirror was last told.
+    /// Penalties since the index was last told.
     untold: u32,
 }
 
-/// The mirror is told of a penalty when there have been this many for each node of the placement: what it knows may be too
-/// little, but never too much, and a placement of many nodes is dear to tell of.
+/// The index is told of a penalty when there have been this many for each node of the placement: what it knows may be too
+/// little, but never too much, and a placement of many nodes is expensive to update.
 const TOLD_SHARE: u32 = 16;
 
 /// A tree of states rooted at the start.
@@ -87,7 +87,7 @@ pub struct Tree<D: Domain> {
     /// By placement: metres added to every distance from there.
     penalties_m: Vec<f64>,
     /// What bounds on distances are reckoned from; `None` since a penalty was negative or no number.
-    mirrors: Option<Mirrors>,
+    indices: Option<CoordinateIndices>,
     /// For whoever records what becomes of it; `None` if nobody does.
     births: Option<Births>,
 }
@@ -107,9 +107,9 @@ impl<D: Domain> Tree<D> {
 
     /// The tree that holds only the start.
     pub fn rooted_at(m: &D, start: State<D>) -> Self {
-        let mirrors = Some(Mirrors::new(m, &start.robot));
+        let indices = Some(CoordinateIndices::new(m, &start.robot));
         let mut tree =
-            Self { nodes: Vec::new(), placements: Vec::new(), penalties_m: Vec::new(), mirrors, births: None };
+            Self { nodes: Vec::new(), placements: Vec::new(), penalties_m: Vec::new(), indices, births: None };
         tree.open_placement();
         tree.push(m, start, None, 0);
         tree
@@ -136,8 +136,8 @@ impl<D: Domain> Tree<D> {
 
     fn push(&mut self, m: &D, state: State<D>, edge: Option<Edge<D>>, placement: u32) {
         let working_point = m.working_point(&state.robot);
-        if let Some(mirrors) = &mut self.mirrors {
-            mirrors.push(m, &state, working_point, placement, &self.penalties_m);
+        if let Some(indices) = &mut self.indices {
+            indices.push(m, &state, working_point, placement, &self.penalties_m);
         }
         if let Some(births) = &mut self.births {
             births.of.push(births.next);
@@ -165,8 +165,8 @@ impl<D: Domain> Tree<D> {
         if let Some(births) = &mut self.births {
             births.of.pop();
         }
-        for mirror in self.mirrors.iter_mut().flat_map(Mirrors::all) {
-            mirror.pop(&self.penalties_m);
+        for coordinate_index in self.indices.iter_mut().flat_map(CoordinateIndices::all) {
+            coordinate_index.pop(&self.penalties_m);
         }
     }
 
@@ -181,7 +181,7 @@ impl<D: Domain> Tree<D> {
         let Some(first) = way.filter(is_on).last() else { return 0 };
         let Some(root) = self.node(Self::ROOT).map(|root| root.state.clone()) else { return 0 };
         let old = std::mem::replace(self, Self::rooted_at(m, root));
-        let has_mirrors = old.mirrors.is_some();
+        let has_indices = old.indices.is_some();
         let births = old.births;
         // By old index: the new id; `None` for what is gone. Parents come before their children.
         let mut kept = vec![Some(Self::ROOT)];
@@ -205,8 +205,8 @@ impl<D: Domain> Tree<D> {
         if let (Some(penalty_m), Some(known_m)) = (self.penalties_m.first_mut(), old.penalties_m.first()) {
             *penalty_m = *known_m;
         }
-        if !has_mirrors {
-            self.mirrors = None;
+        if !has_indices {
+            self.indices = None;
         }
         self.births = births.map(|births| {
             let all = births.of.iter().zip(&kept).filter(|(_, id)| id.is_some());
@@ -222,24 +222,24 @@ impl<D: Domain> Tree<D> {
         let (Some(penalty_m), Some(p)) = (self.penalties_m.get_mut(at), self.placements.get_mut(at)) else { return };
         *penalty_m += metres;
         if metres.is_nan() || metres < 0.0 {
-            self.mirrors = None;
+            self.indices = None;
         }
         p.untold += 1;
         if metres > 0.0 && p.untold.saturating_mul(TOLD_SHARE) >= p.count {
             p.untold = 0;
             let last = p.last;
-            self.tell_mirrors(last);
+            self.tell_indices(last);
         }
     }
 
-    /// Tells the mirrors the penalty of `last` and of all nodes before it in the same placement.
-    fn tell_mirrors(&mut self, last: Option<NodeId>) {
-        for mirror in self.mirrors.iter_mut().flat_map(Mirrors::all) {
+    /// Tells the indices the penalty of `last` and of all nodes before it in the same placement.
+    fn tell_indices(&mut self, last: Option<NodeId>) {
+        for coordinate_index in self.indices.iter_mut().flat_map(CoordinateIndices::all) {
             let (mut next, mut told) = (last, None);
             while let Some(id) = next {
-                let block = mirror.block_of(id.index());
+                let block = coordinate_index.block_of(id.index());
                 if block != told {
-                    mirror.refresh_penalty(id.index(), &self.penalties_m);
+                    coordinate_index.refresh_penalty(id.index(), &self.penalties_m);
                     told = block;
                 }
                 next = self.nodes.get(id.index()).and_then(|node| node.before);
@@ -268,8 +268,8 @@ impl<D: Domain> Tree<D> {
         self.births.as_ref().map_or(&[], |births| &births.of)
     }
 
-    pub(crate) fn mirrors(&self) -> Option<&Mirrors> {
-        self.mirrors.as_ref()
+    pub(crate) fn indices(&self) -> Option<&CoordinateIndices> {
+        self.indices.as_ref()
     }
 
     pub(crate) fn at(&self, index: u32) -> Option<&Node<D>> {

@@ -131,7 +131,7 @@ pub trait Validity<D: Domain>: Send + Sync {
     fn check(&self, m: &D, state: &State<D>, contacts: &D::Contacts) -> Result<(), Blame>;
 
     /// The same rules for the objects alone, as if the robot could pass through everything: what the hierarchical search
-    /// plans with first. `None` if they cannot be told apart.
+    /// plans with first. `None` if they are not separate.
     fn without_robot(&self) -> Option<Arc<dyn Validity<D>>> {
         None
     }

@@ -67,16 +67,16 @@ mod checks {
         });
     }
 
-    /// Through random states, some twice (a leg without length); from one mode to another and back.
+    /// Through random states, some twice (a segment without length); from one mode to another and back.
     pub(super) fn motions<D: Domain>(m: &D, mode: D::Mode) {
         let way = proptest::collection::vec((states(m, mode), any::<bool>()), 2..6);
         proptest!(config(96, REGRESSIONS), |(way in way, ts in looks())| {
             let stops: Vec<_> = way.into_iter().flat_map(|(s, twice)| vec![s; 1 + usize::from(twice)]).collect();
-            let legs: Vec<_> = stops.windows(2).map(|leg| component_travel(m, &leg[0], &leg[1])).collect();
+            let segments: Vec<_> = stops.windows(2).map(|segment| component_travel(m, &segment[0], &segment[1])).collect();
             let (start, claims) = (stops[0].clone(), MotionClaims::default());
-            let straight = Straight::new(start.clone(), stops[1].robot.clone(), legs[0]);
+            let straight = Straight::new(start.clone(), stops[1].robot.clone(), segments[0]);
             check_motion(m, &straight, &start, &ts, &claims)?;
-            if let Some(motion) = Waypoints::new(stops, &legs, start.mode.clone()) {
+            if let Some(motion) = Waypoints::new(stops, &segments, start.mode.clone()) {
                 check_motion(m, &motion, &start, &ts, &claims)?;
             }
         });
@@ -176,7 +176,7 @@ mod checks {
 
 /// The mode changes at the very beginning, before anything moves: a grasp and then a lift in one motion.
 #[test]
-fn a_first_leg_without_length_keeps_its_mode() {
+fn a_first_segment_without_length_keeps_its_mode() {
     let m = Bench::default();
     let (open, held) = (state([0.5, 0.0]), State { mode: Tag::new(1), ..state([0.5, 0.0]) });
     let end = State { mode: Tag::new(2), ..state([1.5, 0.0]) };

@@ -244,7 +244,7 @@ fn only_what_is_reversible_is_run_backwards() {
     let to = PartialState::anywhere(m).with_object(ObjectId::new(0), [3.0, 2.0]);
     let strategy = paper_strategy().unwrap();
     let interrupt = darrt_core::budget::Interrupt::NEVER;
-    let extender = Extender { problem: &problem, options: &strategy.extend, reroute: None, interrupt };
+    let extender = Extender { problem: &problem, options: &strategy.extend, local_repair: None, interrupt };
     let reached = extender.extend(problem.start(), &to, &mut stream(1, 0, 0, Purpose::Extend)).reached;
     let (first, last) = (&reached[0].instance, &reached.last().unwrap().instance);
     assert!(first.reversible && !last.reversible);

@@ -181,7 +181,7 @@ fn plate_too_wide_and_no_push() {
     let case =
         Case { primitives, objects: plate([0.0, 0.0]), goals: goal("plate", "table", [0.1, 0.3]), ..Case::default() };
     let (object, _) = case.cause(|cause| match cause {
-        Cause::NoMeans { object, .. } => Some(object.clone()),
+        Cause::InfeasibleGoal { object, .. } => Some(object.clone()),
         _ => None,
     });
     assert_eq!(object, "plate");
@@ -302,7 +302,7 @@ fn side_table_too_high_for_the_arm() {
 fn heavier_than_the_gripper_holds() {
     let case = Case { objects: mug("mug", [-0.2, 0.2], "mass_kg = 500"), ..Case::default() };
     let (lack, _) = case.cause(|cause| match cause {
-        Cause::NoMeans { lack, .. } => Some(lack.clone()),
+        Cause::InfeasibleGoal { lack, .. } => Some(lack.clone()),
         _ => None,
     });
     assert!(lack.contains("500 kg"), "{lack}");
@@ -357,7 +357,7 @@ fn primitive_missing() {
     case.world += &(block("side table", [0.8, 0.8, 0.7], [-2.5, 0.0, 0.35]) + &top("side table"));
     case.goals = goal("mug", "side table", [-2.2, 0.0]);
     let (lack, _) = case.cause(|cause| match cause {
-        Cause::NoMeans { lack, .. } => Some(lack.clone()),
+        Cause::InfeasibleGoal { lack, .. } => Some(lack.clone()),
         _ => None,
     });
     assert!(lack.contains(PrimitiveName::PICK.as_str()), "{lack}");

@@ -1,6 +1,6 @@
 //! The building blocks of the primitives: functions that turn a state and a wish into instances, for any
 //! [`Manipulator`](crate::manipulator::Manipulator). What is in the way of a stance is asked of
-//! [`surroundings`](crate::surroundings); whether whole motions are free is judged later.
+//! [`collision_scene`](crate::collision_scene); whether whole motions are free is judged later.
 //!
 //! | wish | file |
 //! |---|---|

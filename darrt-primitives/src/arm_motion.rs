@@ -10,12 +10,12 @@ use darrt_core::space::ComponentSpace;
 use darrt_core::state::ObjectId;
 use nalgebra::Isometry3;
 
+use crate::configurations::Configurations;
 use crate::heading_drive;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Held, Mode};
 use crate::push::slide::Slide;
 use crate::tabletop::{Tabletop, TabletopState};
-use crate::way::Way;
 
 /// What moves along with the hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,10 +42,10 @@ pub struct Waypoint<J> {
 ///
 /// Nearly every node of a tree has a motion of its own, so it keeps no more of the state that it starts from than it must.
 pub struct ArmMotion<M: Manipulator> {
-    way: Way<M::Joints>,
+    way: Configurations<M::Joints>,
     /// Where the objects are at the start.
     objects: Box<[Isometry3<f64>]>,
-    /// `None`: those of a single leg.
+    /// `None`: those of a single segment.
     knots: Option<Box<[f64]>>,
     load: Load,
     before: Mode,
@@ -54,8 +54,8 @@ pub struct ArmMotion<M: Manipulator> {
     length_m: f64,
 }
 
-/// The knots of a motion of a single leg.
-const SINGLE_LEG: [f64; 2] = [0.0, 1.0];
+/// The knots of a motion of a single segment.
+const SINGLE_SEGMENT: [f64; 2] = [0.0, 1.0];
 
 /// What moves along, as it is kept.
 enum Load {
@@ -120,9 +120,9 @@ impl<M: Manipulator> ArmMotion<M> {
             *knot = if length_m > 0.0 { *knot / length_m } else { 0.0 };
         }
         Self {
-            way: Way::new(start.robot, waypoints.iter().map(|w| w.robot)),
+            way: Configurations::new(start.robot, waypoints.iter().map(|w| w.robot)),
             objects: start.objects.as_slice().into(),
-            knots: (knots != SINGLE_LEG).then(|| knots.into_boxed_slice()),
+            knots: (knots != SINGLE_SEGMENT).then(|| knots.into_boxed_slice()),
             load,
             before: start.mode.clone(),
             during,
@@ -151,8 +151,8 @@ impl<M: Manipulator> ArmMotion<M> {
         }
     }
 
-    /// The leg that `t` lies on and how much of it is done; `None` at the end.
-    fn leg_at(&self, t: f64) -> Option<(usize, f64)> {
+    /// The segment that `t` lies on and how much of it is done; `None` at the end.
+    fn segment_at(&self, t: f64) -> Option<(usize, f64)> {
         if t >= 1.0 {
             return None;
         }
@@ -163,8 +163,8 @@ impl<M: Manipulator> ArmMotion<M> {
         Some((begin, (t - from) / (to - from)))
     }
 
-    fn robot_at(&self, m: &Tabletop<M>, leg: Option<(usize, f64)>) -> Configuration<M::Joints> {
-        let ends = leg.and_then(|(leg, s)| Some((self.way.get(leg)?, self.way.get(leg + 1)?, s)));
+    fn robot_at(&self, m: &Tabletop<M>, segment: Option<(usize, f64)>) -> Configuration<M::Joints> {
+        let ends = segment.and_then(|(segment, s)| Some((self.way.get(segment)?, self.way.get(segment + 1)?, s)));
         ends.map_or_else(|| self.way.last(), |(a, b, s)| m.robot().interpolate(&a, &b, s))
     }
 }
@@ -201,8 +201,8 @@ impl Pushed {
         gap_m + m.movable(self.object).map_or(0.0, |movable| movable.reach_m)
     }
 
-    fn share_at(&self, leg: Option<(usize, f64)>) -> f64 {
-        let ends = leg.and_then(|(leg, s)| Some((self.shares.get(leg)?, self.shares.get(leg + 1)?, s)));
+    fn share_at(&self, segment: Option<(usize, f64)>) -> f64 {
+        let ends = segment.and_then(|(segment, s)| Some((self.shares.get(segment)?, self.shares.get(segment + 1)?, s)));
         ends.map_or_else(|| self.shares.last().copied().unwrap_or(0.0), |(a, b, s)| a + (b - a) * s)
     }
 }
@@ -213,7 +213,7 @@ impl<M: Manipulator> Motion<Tabletop<M>> for ArmMotion<M> {
     }
 
     fn knots(&self) -> &[f64] {
-        self.knots.as_deref().unwrap_or(&SINGLE_LEG)
+        self.knots.as_deref().unwrap_or(&SINGLE_SEGMENT)
     }
 
     fn at_into(&self, m: &Tabletop<M>, t: f64, out: &mut TabletopState<M>) {
@@ -225,15 +225,15 @@ impl<M: Manipulator> Motion<Tabletop<M>> for ArmMotion<M> {
             out.mode.clone_from(&self.before);
             return;
         }
-        let leg = self.leg_at(t);
-        out.robot = self.robot_at(m, leg);
+        let segment = self.segment_at(t);
+        out.robot = self.robot_at(m, segment);
         let held = match &self.load {
             Load::Nothing => None,
             Load::AsHeld => self.during.held(),
             Load::Held(held) => Some(&**held),
             Load::Pushed(pushed) => {
                 if let Some(pose) = out.objects.get_mut(pushed.object.index()) {
-                    *pose = pushed.slide.at(pushed.share_at(leg));
+                    *pose = pushed.slide.at(pushed.share_at(segment));
                 }
                 None
             }

@@ -13,7 +13,7 @@
 //! A* over a lattice of places and yaws in the signed distances of outlines, then shortcuts and pulling taut, then the exact
 //! check of every straight drive. A coarse lattice first, a finer one where it finds nothing. No random choice, no clock.
 
-use darrt_core::reroute::NoWay;
+use darrt_core::local_repair::NoWay;
 use darrt_core::space::so2::turn;
 
 use crate::manipulator::Manipulator;
@@ -37,7 +37,7 @@ use footprint::Footprint;
 use lattice::Lattice;
 use nalgebra::Vector2;
 use search::{Outcome, Search};
-use shorten::Way;
+use shorten::PricedPath;
 use sight::{Judge, Sight, Stop, Terms};
 
 /// What a way of the base costs, and how hard it is looked for.
@@ -103,7 +103,7 @@ impl BasePath {
         from: &TabletopState<M>,
         to: &[f64; 3],
     ) -> Result<Vec<[f64; 3]>, NoWay> {
-        let around = m.surroundings();
+        let around = m.collision_scene();
         let [wanted_m, least_margin_m] = around.drive_margins_m(care);
         let plan = around.floor_plan();
         let mut footprint = Footprint::new(m, from, plan, least_margin_m);
@@ -130,7 +130,7 @@ impl BasePath {
                 let looks = footprint.looks() + self.looks;
                 if !is_doubtful {
                     let way = match way_along(level, ends, &mut Sight::new(&mut footprint, terms, None), looks) {
-                        Trial::Way(way) => way,
+                        Trial::PricedPath(way) => way,
                         Trial::Hope => continue,
                         Trial::Hopeless => break,
                     };
@@ -145,8 +145,8 @@ impl BasePath {
                 }
                 let judge: &mut Judge<'_> = &mut |a, b| drives.is_clear(0, a, b);
                 match way_along(level, ends, &mut Sight::new(&mut footprint, terms, Some(judge)), looks) {
-                    Trial::Way(way) if is_clear(&way, |a, b| drives.is_clear(care, a, b)) => return Ok(way),
-                    Trial::Way(_) => return Err(NoWay::WithThisCare),
+                    Trial::PricedPath(way) if is_clear(&way, |a, b| drives.is_clear(care, a, b)) => return Ok(way),
+                    Trial::PricedPath(_) => return Err(NoWay::WithThisCare),
                     Trial::Hope => {}
                     Trial::Hopeless => break,
                 }
@@ -160,7 +160,7 @@ impl BasePath {
 #[derive(Debug, Clone, PartialEq)]
 enum Trial {
     /// The poses of a way.
-    Way(Vec<[f64; 3]>),
+    PricedPath(Vec<[f64; 3]>),
     /// No way, but a finer lattice may have one.
     Hope,
     /// No way, nor a passage that is wide enough, or nearly.
@@ -193,7 +193,7 @@ fn way_along(level: Level, [start, goal]: [&[f64; 3]; 2], sight: &mut Sight<'_>,
     }
     match outcome {
         Outcome::Found(way) => match shorten::shorten(sight, &way) {
-            Some(way) => Trial::Way(refined(way, stops, sight, looks).poses()),
+            Some(way) => Trial::PricedPath(refined(way, stops, sight, looks).poses()),
             None => Trial::Hope,
         },
         Outcome::Enclosed if sight.narrow() == narrow => Trial::Hopeless,
@@ -202,7 +202,7 @@ fn way_along(level: Level, [start, goal]: [&[f64; 3]; 2], sight: &mut Sight<'_>,
 }
 
 /// The way, or a cheaper one along a lattice that is finer the shorter the way is, where there may be one.
-fn refined(way: Way, stops: [Stop; 2], sight: &mut Sight<'_>, looks: usize) -> Way {
+fn refined(way: PricedPath, stops: [Stop; 2], sight: &mut Sight<'_>, looks: usize) -> PricedPath {
     let [start, goal] = stops.map(|stop| stop.at);
     let cost_m = way.cost_m();
     if cost_m <= STRAIGHT_ENOUGH * sight.open_cost_m(&start, &goal) {

@@ -34,7 +34,7 @@ fn slowness<M: Manipulator>(robot: &M, a: &Configuration<M::Joints>, b: &Configu
     1.0 + OUT_PER_M * (out_m - FOLDED_M).max(0.0)
 }
 
-/// Every leg of a motion takes what [`Manipulator::duration_s`] says.
+/// Every segment of a motion takes what [`Manipulator::duration_s`] says.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ExecutionTime;
 
@@ -54,13 +54,13 @@ impl<M: Manipulator> ExecutionCost<Tabletop<M>> for ExecutionTime {
         for end in knots.chain([until]) {
             instance.motion.at_into(m, end, &mut next);
             let is_loaded = next.mode.held().is_some() || here.mode.held().is_some();
-            let mut leg_s = robot.duration_s(&here.robot, &next.robot, is_loaded);
-            leg_s *= slowness(robot, &here.robot, &next.robot);
+            let mut segment_s = robot.duration_s(&here.robot, &next.robot, is_loaded);
+            segment_s *= slowness(robot, &here.robot, &next.robot);
             if !is_free {
                 let [a, b] = [&here, &next].map(|state| robot.world_from_tool(&state.robot).translation.vector);
-                leg_s = leg_s.max((b - a).norm() / AT_OBJECT_M_PER_S);
+                segment_s = segment_s.max((b - a).norm() / AT_OBJECT_M_PER_S);
             }
-            seconds += leg_s;
+            seconds += segment_s;
             std::mem::swap(&mut here, &mut next);
         }
         if m.carried(&here.mode) == held_before { seconds } else { seconds + GRIP_S }

@@ -10,9 +10,9 @@ use darrt_geom::support::SupportSurface;
 use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
-use crate::arm_space::{ARM, BASE};
 use crate::kinematics::JointLimit;
 use crate::manipulator::{Configuration, JointVector, Manipulator};
+use crate::mobile_arm_space::{ARM, BASE};
 use crate::mode::SurfaceId;
 use crate::object_space::upright;
 use crate::tabletop::{Tabletop, TabletopState};

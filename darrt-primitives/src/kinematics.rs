@@ -32,7 +32,7 @@ pub mod urdf;
 pub use batch::{BatchForward, BatchPoses, PoseLanes};
 pub use chain_inverse::{ChainInverse, InverseOptions, JointValues};
 pub use collision::{link_bodies, no_meshes};
-pub use jacobian::Chain;
+pub use jacobian::KinematicChain;
 pub use limit::JointLimit;
 pub use mesh_places::MeshPlaces;
 pub use pair_sampling::{PairFate, SampledPairs, sample_pairs};

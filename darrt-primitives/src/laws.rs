@@ -17,14 +17,14 @@
 //! ```
 //! # #[cfg(feature = "testing")] {
 //! use darrt_core::testing::strategies::{config, configs, seeds};
-//! use darrt_primitives::arm_space::ArmSpace;
+//! use darrt_primitives::mobile_arm_space::MobileArmSpace;
 //! use darrt_primitives::laws::{ManipulatorClaims, check_manipulator};
 //! use darrt_primitives::manipulator::Manipulator;
 //! use darrt_primitives::testing::gantry::{Gantry, Joints};
 //! use proptest::proptest;
 //!
 //! let robot = Gantry::new().unwrap();
-//! let space = ArmSpace::<Joints>::new([-2.0; 2], [2.0; 2], robot.limits(), robot.joint_weights_m()).unwrap();
+//! let space = MobileArmSpace::<Joints>::new([-2.0; 2], [2.0; 2], robot.limits(), robot.joint_weights_m()).unwrap();
 //! proptest!(config(16, None), |(a in configs(&space), b in configs(&space), seed in seeds())| {
 //!     check_manipulator(&robot, [&a, &b], [0.02, 0.08], seed, &ManipulatorClaims::default())?;
 //! });

@@ -86,7 +86,7 @@ mod tests {
         }
 
         #[test]
-        fn a_smaller_wish_stays_within_the_range(least_m in 0.0..0.5_f64, more_m in 0.0..0.5_f64, most_m in 0.0..1.0_f64) {
+        fn a_smaller_wanted_length_stays_within_the_range(least_m in 0.0..0.5_f64, more_m in 0.0..0.5_f64, most_m in 0.0..1.0_f64) {
             let range = LengthRange::new(least_m, least_m + more_m).unwrap();
             let less = range.at_most(most_m);
             prop_assert_eq!(less.least_m(), range.least_m());

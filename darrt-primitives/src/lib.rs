@@ -3,7 +3,7 @@
 //! | question | file |
 //! |---|---|
 //! | what must a robot offer? | [`manipulator`], [`joints`], [`kinematics`] |
-//! | where can robot and objects be? | [`arm_space`], [`object_space`], [`tabletop`] |
+//! | where can robot and objects be? | [`mobile_arm_space`], [`object_space`], [`tabletop`] |
 //! | what is held, what rests on what? | [`mode`] |
 //! | which primitives are there, and what do they promise? | [`primitive`], [`contract`] |
 //! | how do objects slide when pushed? | [`push`], [`contact`] |
@@ -12,8 +12,8 @@
 //! | how near to an edge may an object be left? | [`edge_margin`] |
 //! | how does a wish become motions? | [`action`], [`arm_motion`] |
 //! | how long are straight lines of the hand? | [`length_range`] |
-//! | who may touch whom, and what is too near? | [`surroundings`] |
-//! | what is in the way, and is there a way around? | [`validity`], [`detour`], [`base_path`] |
+//! | who may touch whom, and what is too near? | [`collision_scene`] |
+//! | what is in the way, and is there a way around? | [`validity`], [`local_repair`], [`base_path`] |
 //! | how long does a plan take? | [`execution_time`] |
 //! | what is asked for, and what is a goal? | [`wish`], [`goal`] |
 //! | is my robot right? | [`laws`], and `testing` (feature `testing`) |
@@ -22,11 +22,11 @@
 
 pub mod action;
 pub mod arm_motion;
-pub mod arm_space;
 pub mod base_path;
+pub mod collision_scene;
+mod configurations;
 pub mod contact;
 pub mod contract;
-pub mod detour;
 pub mod edge_margin;
 pub mod error;
 pub mod execution_time;
@@ -36,18 +36,18 @@ pub mod heading_drive;
 pub mod joints;
 pub mod kinematics;
 pub mod laws;
-mod leg;
 pub mod length_range;
+pub mod local_repair;
 pub mod manipulator;
+pub mod mobile_arm_space;
 pub mod mode;
 pub mod object_space;
 pub mod primitive;
 pub mod push;
-pub mod surroundings;
+mod segment;
 pub mod tabletop;
+pub mod target_query;
 #[cfg(feature = "testing")]
 pub mod testing;
 pub mod tilt;
 pub mod validity;
-mod way;
-pub mod wish;

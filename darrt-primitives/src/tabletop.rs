@@ -13,18 +13,18 @@ use darrt_geom::support::SupportSurface;
 use nalgebra::{Isometry3, Point2, Vector3};
 use smallvec::SmallVec;
 
-use crate::arm_space::ArmSpace;
+use crate::collision_scene::{CollisionScene, NearPair, Strictness};
 use crate::contract::Contract;
 use crate::edge_margin::Brink;
 use crate::grasp::hold::{Hold, Load, NoHold, hold};
 use crate::grasp::{Grasp, GraspFamily};
 use crate::length_range::LengthRange;
 use crate::manipulator::{Configuration, Manipulator};
+use crate::mobile_arm_space::MobileArmSpace;
 use crate::mode::{Contacts, Held, Mode, SurfaceId};
 use crate::object_space::ObjectSpace;
 use crate::primitive::STANDARD;
 use crate::push::edge_stop::{EdgeRule, RimReach};
-use crate::surroundings::{NearPair, Strictness, Surroundings};
 
 /// A rigid object that can be manipulated, besides its configuration space.
 pub struct Movable {
@@ -184,12 +184,12 @@ const REACH_WEIGHT: f64 = 0.1;
 #[derive(Debug)]
 pub struct Tabletop<M: Manipulator> {
     manipulator: Arc<M>,
-    robot: ArmSpace<M::Joints>,
+    robot: MobileArmSpace<M::Joints>,
     objects: Vec<ObjectSpace>,
     movables: Arc<[Movable]>,
     supports: Vec<Support>,
     settings: ActionSettings<M::Joints>,
-    surroundings: Arc<Surroundings>,
+    collision_scene: Arc<CollisionScene>,
     contracts: Arc<[(PrimitiveId, Contract)]>,
 }
 
@@ -203,7 +203,7 @@ impl<M: Manipulator> Tabletop<M> {
     /// [`GeomError`] if there are too many bodies, two share a name, or a shape cannot be checked.
     pub fn new(
         manipulator: Arc<M>,
-        robot: ArmSpace<M::Joints>,
+        robot: MobileArmSpace<M::Joints>,
         objects: Vec<(ObjectSpace, Movable)>,
         supports: Vec<Support>,
         fixed: &[FixedBody],
@@ -211,14 +211,14 @@ impl<M: Manipulator> Tabletop<M> {
     ) -> Result<Self, GeomError> {
         let (objects, movables): (_, Vec<Movable>) = objects.into_iter().unzip();
         let strictness = Strictness { safety: settings.safety, ..Strictness::default() };
-        let surroundings = Surroundings::new(&*manipulator, &movables, &supports, fixed, strictness)?;
-        let surroundings = Arc::new(surroundings);
+        let collision_scene = CollisionScene::new(&*manipulator, &movables, &supports, fixed, strictness)?;
+        let collision_scene = Arc::new(collision_scene);
         let movables = movables.into();
         let contracts = STANDARD.into();
-        Ok(Self { manipulator, robot, objects, movables, supports, settings, surroundings, contracts })
+        Ok(Self { manipulator, robot, objects, movables, supports, settings, collision_scene, contracts })
     }
 
-    /// The same with further primitives, by their indices: a primitive is free to be rerouted, and its instances are written
+    /// The same with further primitives, by their indices: a primitive is free to be repaired, and its instances are written
     /// into plans, only if its contract is known here.
     #[must_use]
     pub fn with_primitives(mut self, further: &[(PrimitiveId, Contract)]) -> Self {
@@ -236,17 +236,18 @@ impl<M: Manipulator> Tabletop<M> {
     /// in each of the `goals`. Which pairs these are.
     #[must_use]
     pub fn accept_near(&mut self, start: &TabletopState<M>, goals: &[TabletopState<M>]) -> Vec<NearPair> {
-        let mut surroundings = self.surroundings.copy();
+        let mut collision_scene = self.collision_scene.copy();
         let states = std::iter::once((start, false)).chain(goals.iter().map(|goal| (goal, true)));
         let robot = &*self.manipulator;
-        let found = states.flat_map(|(state, is_at_goal)| surroundings.accept_near(robot, state, is_at_goal)).collect();
-        self.surroundings = Arc::new(surroundings);
+        let found =
+            states.flat_map(|(state, is_at_goal)| collision_scene.accept_near(robot, state, is_at_goal)).collect();
+        self.collision_scene = Arc::new(collision_scene);
         found
     }
 
     /// Everything that can be touched, and what may touch what.
-    pub fn surroundings(&self) -> &Arc<Surroundings> {
-        &self.surroundings
+    pub fn collision_scene(&self) -> &Arc<CollisionScene> {
+        &self.collision_scene
     }
 
     /// The robot.
@@ -325,7 +326,7 @@ impl<M: Manipulator> Tabletop<M> {
 }
 
 impl<M: Manipulator> Domain for Tabletop<M> {
-    type Robot = ArmSpace<M::Joints>;
+    type Robot = MobileArmSpace<M::Joints>;
     type Object = ObjectSpace;
     type Mode = Mode;
     type Contacts = Contacts;
@@ -356,7 +357,7 @@ impl<M: Manipulator> Domain for Tabletop<M> {
             movables: Arc::clone(&self.movables),
             supports: self.supports.clone(),
             settings: self.settings.clone(),
-            surroundings: Arc::new(self.surroundings.without_robot()),
+            collision_scene: Arc::new(self.collision_scene.without_robot()),
             contracts: Arc::clone(&self.contracts),
         })
     }
@@ -396,7 +397,7 @@ impl<M: Manipulator> Domain for Tabletop<M> {
         REACH_WEIGHT * gap_m
     }
 
-    fn hop(&self, from: (ObjectId, &Isometry3<f64>), to: (ObjectId, &Isometry3<f64>)) -> f64 {
+    fn travel_between(&self, from: (ObjectId, &Isometry3<f64>), to: (ObjectId, &Isometry3<f64>)) -> f64 {
         (from.1.translation.vector - to.1.translation.vector).norm()
     }
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::Isometry3;
 
-use crate::arm_space::difference;
 use crate::manipulator::{Configuration, Manipulator};
+use crate::mobile_arm_space::difference;
 use crate::object_space::own_axis;
 use crate::tabletop::{Tabletop, TabletopState};
 

@@ -20,17 +20,17 @@ use darrt_geom::body_set::BodySet;
 use darrt_geom::collide::CollisionModel;
 use nalgebra::{Isometry3, Point2};
 
-use crate::leg::Leg;
+use crate::collision_scene::{CollisionScene, Strict, Worker};
 use crate::manipulator::Manipulator;
 use crate::mode::Contacts;
-use crate::surroundings::{Strict, Surroundings, Worker};
+use crate::segment::Segment;
 use crate::tabletop::{Tabletop, TabletopState};
 use crate::tilt::UNSEEN_RAD;
 
 /// The scene as seen by a table-top domain.
 #[derive(Debug, Clone)]
 pub struct SceneValidity {
-    surroundings: Arc<Surroundings>,
+    collision_scene: Arc<CollisionScene>,
     /// The robot can pass through everything and has no limits.
     ignores_robot: bool,
 }
@@ -38,12 +38,12 @@ pub struct SceneValidity {
 impl SceneValidity {
     /// The check for domain `m`.
     pub fn new<M: Manipulator>(m: &Tabletop<M>) -> Self {
-        Self { surroundings: Arc::clone(m.surroundings()), ignores_robot: false }
+        Self { collision_scene: Arc::clone(m.collision_scene()), ignores_robot: false }
     }
 
     /// The collision model, for reports.
     pub fn model(&self) -> &CollisionModel {
-        self.surroundings.model()
+        self.collision_scene.model()
     }
 
     /// Joint limits and the bounds of the base.
@@ -109,14 +109,14 @@ impl SceneValidity {
 
     /// How far the parameter may grow before an object that slides could leave its surface: its centre is as far from
     /// the edge as the surface says. For surfaces with notches; the end of a slide is looked at anyhow.
-    fn to_edge<M: Manipulator>(&self, m: &Tabletop<M>, state: &TabletopState<M>, leg: &Leg) -> f64 {
+    fn to_edge<M: Manipulator>(&self, m: &Tabletop<M>, state: &TabletopState<M>, segment: &Segment) -> f64 {
         let mut least = f64::INFINITY;
-        for (i, (body, pose)) in self.surroundings.objects().iter().zip(&state.objects).enumerate() {
-            if leg.moved.contains(*body)
+        for (i, (body, pose)) in self.collision_scene.objects().iter().zip(&state.objects).enumerate() {
+            if segment.moved.contains(*body)
                 && let Some(surface) = state.mode.support_of(ObjectId::new(i)).and_then(|s| m.surface(s))
             {
                 let depth_m = surface.depth(&Point2::new(pose.translation.x, pose.translation.y));
-                least = least.min(depth_m.max(0.0) / leg.fastest);
+                least = least.min(depth_m.max(0.0) / segment.fastest);
             }
         }
         least
@@ -138,7 +138,7 @@ impl SceneValidity {
         state: &TabletopState<M>,
         moved: &BodySet,
     ) -> Result<(), Blame> {
-        for (i, (body, pose)) in self.surroundings.objects().iter().zip(&state.objects).enumerate() {
+        for (i, (body, pose)) in self.collision_scene.objects().iter().zip(&state.objects).enumerate() {
             if moved.contains(*body) {
                 Self::check_object(m, state, ObjectId::new(i), pose)?;
             }
@@ -154,7 +154,7 @@ impl SceneValidity {
         care: usize,
         worker: &mut Worker,
     ) -> FreePrefix {
-        let around = &*self.surroundings;
+        let around = &*self.collision_scene;
         let robot = m.manipulator();
         let mut here = from.clone();
         let mut next = from.clone();
@@ -175,12 +175,12 @@ impl SceneValidity {
             }
             instance.motion.at_into(m, end, &mut next);
             next.mode.clone_from(&here.mode);
-            // Limits and bounds are convex: what holds at both ends of a leg holds between them.
+            // Limits and bounds are convex: what holds at both ends of a segment holds between them.
             if let Err(blame) = self.check_limits(m, &next) {
                 return FreePrefix::blocked(t, blame);
             }
-            let leg = Leg::new(m, &here, &next, (t, end), worker);
-            if let Err((free, blame)) = self.advance_leg(m, instance, &leg, t, &mut here, &mut next, worker) {
+            let segment = Segment::new(m, &here, &next, (t, end), worker);
+            if let Err((free, blame)) = self.advance_segment(m, instance, &segment, t, &mut here, &mut next, worker) {
                 return FreePrefix::blocked(free, blame);
             }
             t = end;
@@ -196,38 +196,38 @@ impl SceneValidity {
         }
     }
 
-    /// Advances `here`, which stands at `t` and is free, to the end of the leg.
-    #[expect(clippy::too_many_arguments, reason = "the loop's state, kept by the caller from leg to leg")]
-    fn advance_leg<M: Manipulator>(
+    /// Advances `here`, which stands at `t` and is free, to the end of the segment.
+    #[expect(clippy::too_many_arguments, reason = "the loop's state, kept by the caller from segment to segment")]
+    fn advance_segment<M: Manipulator>(
         &self,
         m: &Tabletop<M>,
         instance: &Instance<Tabletop<M>>,
-        leg: &Leg,
+        segment: &Segment,
         mut t: f64,
         here: &mut TabletopState<M>,
         next: &mut TabletopState<M>,
         worker: &mut Worker,
     ) -> Result<(), (f64, Blame)> {
-        let around = &*self.surroundings;
+        let around = &*self.collision_scene;
         // Farther than this no pair is told apart; so far every pair may come nearer unseen.
-        let (cap, least) = (around.strictness().cap_m / leg.fastest, around.unseen_m() / leg.fastest);
+        let (cap, least) = (around.strictness().cap_m / segment.fastest, around.unseen_m() / segment.fastest);
         // Nothing touches up to here, and the rules were last found kept there.
         let (mut free, mut kept) = (t, t);
-        let tilting = m.tilt_travel_rad(&here.robot, &next.robot) / (leg.end - leg.begin);
-        leg.watch(around, worker);
+        let tilting = m.tilt_travel_rad(&here.robot, &next.robot) / (segment.end - segment.begin);
+        segment.watch(around, worker);
         loop {
             let until = around.free_until(worker, t, cap).map_err(|hit| (free, around.blame(&hit)))?;
-            self.check_moved_objects(m, here, &leg.moved).map_err(|blame| (kept, blame))?;
+            self.check_moved_objects(m, here, &segment.moved).map_err(|blame| (kept, blame))?;
             kept = t;
-            if t >= leg.end {
+            if t >= segment.end {
                 return Ok(());
             }
-            free = until.min(t + self.to_edge(m, here, leg)).min(t + Self::to_tilt(m, here, tilting));
-            t = if free + least >= leg.end { leg.end } else { free + least };
+            free = until.min(t + self.to_edge(m, here, segment)).min(t + Self::to_tilt(m, here, tilting));
+            t = if free + least >= segment.end { segment.end } else { free + least };
             instance.motion.at_into(m, t, next);
             // At the end of a motion the mode may change, which is judged apart.
             next.mode.clone_from(&here.mode);
-            around.pose(m.manipulator(), next, &leg.moved, worker);
+            around.pose(m.manipulator(), next, &segment.moved, worker);
             std::mem::swap(here, next);
         }
     }
@@ -239,7 +239,7 @@ impl<M: Manipulator> Validity<Tabletop<M>> for SceneValidity {
     }
 
     fn without_robot(&self) -> Option<Arc<dyn Validity<Tabletop<M>>>> {
-        Some(Arc::new(Self { surroundings: Arc::new(self.surroundings.without_robot()), ignores_robot: true }))
+        Some(Arc::new(Self { collision_scene: Arc::new(self.collision_scene.without_robot()), ignores_robot: true }))
     }
 
     fn free_prefix(&self, m: &Tabletop<M>, instance: &Instance<Tabletop<M>>, from: &TabletopState<M>) -> FreePrefix {
@@ -248,7 +248,7 @@ impl<M: Manipulator> Validity<Tabletop<M>> for SceneValidity {
 
     /// 2: all of the wanted margins, 1: half of them.
     fn most_care(&self) -> usize {
-        self.surroundings.most_care()
+        self.collision_scene.most_care()
     }
 
     fn check_with(
@@ -259,7 +259,7 @@ impl<M: Manipulator> Validity<Tabletop<M>> for SceneValidity {
         contacts: &Contacts,
     ) -> Result<(), Blame> {
         self.check_rules(m, state)?;
-        self.surroundings.check_at(m.manipulator(), state, contacts, Strict { care, is_between: true })
+        self.collision_scene.check_at(m.manipulator(), state, contacts, Strict { care, is_between: true })
     }
 
     fn free_prefix_with(
@@ -269,6 +269,6 @@ impl<M: Manipulator> Validity<Tabletop<M>> for SceneValidity {
         instance: &Instance<Tabletop<M>>,
         from: &TabletopState<M>,
     ) -> FreePrefix {
-        self.surroundings.with_worker(|worker| self.advance(m, instance, from, care, worker))
+        self.collision_scene.with_worker(|worker| self.advance(m, instance, from, care, worker))
     }
 }

@@ -24,9 +24,9 @@ use darrt_primitives::push::Friction;
 use darrt_primitives::push::edge_stop::RimReach;
 use darrt_primitives::push::steady::SlidingDisc;
 use darrt_primitives::tabletop::{Movable, PushSettings};
+use darrt_primitives::target_query::asks_to_push;
 use darrt_primitives::testing::gantry::{Gantry, MAX_GAP_M, TIP_BEYOND_TOOL_M, motion};
 use darrt_primitives::testing::table::{Table, TableState, altered_table, honest_table, object, start};
-use darrt_primitives::wish::asks_to_push;
 use nalgebra::{Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 
 /// What `act` does with the first random numbers with which it succeeds.

@@ -4,9 +4,9 @@
 
 use std::f64::consts::PI;
 
+use darrt_core::local_repair::LocalRepair;
 use darrt_core::motion::Instance;
 use darrt_core::random::{Purpose, stream};
-use darrt_core::reroute::Reroute;
 use darrt_core::space::ComponentSpace;
 use darrt_core::space::so2::turn;
 use darrt_core::state::ComponentSet;
@@ -16,7 +16,7 @@ use darrt_geom::scene::FixedBody;
 use darrt_geom::shape::Shape;
 use darrt_primitives::arm_motion::{ArmMotion, Carried, Waypoint};
 use darrt_primitives::base_path::BasePath;
-use darrt_primitives::detour::Detour;
+use darrt_primitives::local_repair::TransitRepair;
 use darrt_primitives::manipulator::Configuration;
 use darrt_primitives::mode::Contacts;
 use darrt_primitives::primitive;
@@ -215,7 +215,7 @@ fn a_blocked_drive_goes_around() {
     let validity = SceneValidity::new(&m);
     assert!(validity.free_prefix(&m, &straight, &from).blame.is_some());
     let rng = &mut stream(0, 0, 0, Purpose::Sample);
-    let around = Detour::default().reroute(&m, &validity, 0, &straight, &from, rng).unwrap();
+    let around = TransitRepair::default().repair(&m, &validity, 0, &straight, &from, rng).unwrap();
     assert!(validity.free_prefix(&m, &around, &from).blame.is_none());
     assert_eq!(around.at(&m, 1.0, &from), straight.at(&m, 1.0, &from));
     assert!(around.motion.length() > straight.motion.length());

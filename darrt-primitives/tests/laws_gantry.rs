@@ -14,13 +14,13 @@ use darrt_core::space::ComponentSpace;
 use darrt_core::state::ObjectId;
 use darrt_core::testing::strategies::{config, configs, looks, parameters, seeds};
 use darrt_primitives::action::{Chain, pick::pick, place::place, push::push, retreat::retreat, transfer::transfer};
-use darrt_primitives::arm_space::ArmSpace;
-use darrt_primitives::kinematics::{Chain as JointChain, KinematicTree, RobotDescription};
+use darrt_primitives::kinematics::{KinematicChain, KinematicTree, RobotDescription};
 use darrt_primitives::laws::{
     ManipulatorClaims, ReachClaims, TabletopClaims, body_travel, check_chain, check_grasps, check_manipulator,
     check_reaches, check_tabletop,
 };
 use darrt_primitives::manipulator::Manipulator;
+use darrt_primitives::mobile_arm_space::MobileArmSpace;
 use darrt_primitives::testing::gantry::{Gantry, Joints};
 use darrt_primitives::testing::strategies::{any_mode, engaged, holding, resting};
 use darrt_primitives::testing::table::{Table, TableState, honest_table};
@@ -29,8 +29,8 @@ use proptest::prelude::*;
 
 const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_gantry.txt");
 
-fn space(robot: &Gantry) -> ArmSpace<Joints> {
-    ArmSpace::new([-2.0; 2], [2.0; 2], robot.limits(), robot.joint_weights_m()).unwrap()
+fn space(robot: &Gantry) -> MobileArmSpace<Joints> {
+    MobileArmSpace::new([-2.0; 2], [2.0; 2], robot.limits(), robot.joint_weights_m()).unwrap()
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn the_gantry_finds_what_it_reaches() {
 fn a_jacobian_of_a_robot_without_closed_form_equals_finite_differences() {
     let text = include_str!("data/generic_arm.urdf");
     let tree = KinematicTree::new(&RobotDescription::from_text(text).unwrap()).unwrap();
-    let chain = JointChain::new(&tree, "mount", "probe").unwrap();
+    let chain = KinematicChain::new(&tree, "mount", "probe").unwrap();
     let values = proptest::collection::vec(-1.5..1.5_f64, tree.variables().len());
     proptest!(config(64, REGRESSIONS), |(q in values, turn in -3.0..3.0, x in -0.2..0.2)| {
         let root = Isometry3::new(Vector3::new(1.0, x, 0.5), Vector3::new(0.3, turn, 0.1));

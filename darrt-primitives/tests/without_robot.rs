@@ -46,9 +46,9 @@ fn what_breaks_them_breaks_all_rules_and_is_an_object() {
             prop_assert!(all.check(&m, &state, &contacts).is_err());
         }
         // What primitives ask about.
-        let asked = relaxed.surroundings().check(m.manipulator(), &state, &contacts).err();
+        let asked = relaxed.collision_scene().check(m.manipulator(), &state, &contacts).err();
         prop_assert!(asked.as_ref().is_none_or(|blame| blames_object(&m, blame)), "{asked:?}");
-        prop_assert!(relaxed.surroundings().is_base_clear(m.manipulator(), &state.robot));
+        prop_assert!(relaxed.collision_scene().is_base_clear(m.manipulator(), &state.robot));
     });
 }
 

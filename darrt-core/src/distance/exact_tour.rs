@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::greedy_visit::{Departure, hop, last_leg, nearest_departure, open_objects};
+use super::greedy_visit::{Departure, last_stretch, nearest_departure, open_objects, travel_between};
 use super::{Distance, GreedyVisit};
 use crate::domain::Domain;
 use crate::partial::PartialState;
@@ -49,17 +49,17 @@ fn best_tour<D: Domain>(
     bound: f64,
 ) -> f64 {
     if open.is_empty() {
-        return last_leg(m, from.state, to, last);
+        return last_stretch(m, from.state, to, last);
     }
     let mut best = bound;
     for (slot, id) in open.iter().enumerate() {
-        let leg = hop(m, from, to, last, *id);
-        if leg >= best {
+        let next_m = travel_between(m, from, to, last, *id);
+        if next_m >= best {
             continue;
         }
         let rest: SmallVec<[ObjectId; 8]> =
             open.iter().enumerate().filter(|(i, _)| *i != slot).map(|(_, id)| *id).collect();
-        best = best.min(leg + best_tour(m, from, to, &rest, Some(*id), best - leg));
+        best = best.min(next_m + best_tour(m, from, to, &rest, Some(*id), best - next_m));
     }
     best
 }

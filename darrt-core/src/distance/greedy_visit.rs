@@ -49,7 +49,7 @@ pub(super) fn nearest_departure<D: Domain>(
 #[inline]
 pub(crate) fn tour_at_least(ways: &Ways, out: &mut Lanes) {
     // The way to the nearest object, and the whole tour if none is open.
-    let (mut hop, mut alone) = ([f32::INFINITY; LANES], [0.0; LANES]);
+    let (mut travel, mut alone) = ([f32::INFINITY; LANES], [0.0; LANES]);
     let mut is_open = [false; LANES];
     if let Some(robot_m) = &ways.robot_m {
         alone = *robot_m;
@@ -62,11 +62,11 @@ pub(crate) fn tour_at_least(ways: &Ways, out: &mut Lanes) {
             let counts = way > object.open_m;
             out[lane] += if counts { way } else { 0.0 };
             is_open[lane] |= counts;
-            hop[lane] = if reach < hop[lane] { reach } else { hop[lane] };
+            travel[lane] = if reach < travel[lane] { reach } else { travel[lane] };
         }
     }
     for lane in 0..LANES {
-        let first = if is_open[lane] || hop[lane] < alone[lane] { hop[lane] } else { alone[lane] };
+        let first = if is_open[lane] || travel[lane] < alone[lane] { travel[lane] } else { alone[lane] };
         out[lane] += first;
     }
 }
@@ -89,11 +89,11 @@ pub(crate) fn open_objects<D: Domain>(m: &D, from: &State<D>, to: &PartialState<
 pub(crate) fn greedy_tour<D: Domain>(m: &D, from: &Departure<'_, D>, to: &PartialState<D>) -> f64 {
     let (mut open, mut total) = open_objects(m, from.state, to);
     let mut last: Option<ObjectId> = None;
-    while let Some((slot, hop)) = nearest_open(m, from, to, &open, last) {
+    while let Some((slot, travel)) = nearest_open(m, from, to, &open, last) {
         last = Some(open.swap_remove(slot).0);
-        total += hop;
+        total += travel;
     }
-    total + last_leg(m, from.state, to, last)
+    total + last_stretch(m, from.state, to, last)
 }
 
 /// Which of the `open` objects is closest to where the robot now is, and how far.
@@ -104,12 +104,13 @@ fn nearest_open<D: Domain>(
     open: &[(ObjectId, f64)],
     last: Option<ObjectId>,
 ) -> Option<(usize, f64)> {
-    let hops = open.iter().enumerate().map(|(slot, (id, _))| (slot, *id, hop(m, from, to, last, *id)));
-    hops.min_by(|a, b| a.2.total_cmp(&b.2).then(a.1.cmp(&b.1))).map(|(slot, _, hop)| (slot, hop))
+    let distances =
+        open.iter().enumerate().map(|(slot, (id, _))| (slot, *id, travel_between(m, from, to, last, *id)));
+    distances.min_by(|a, b| a.2.total_cmp(&b.2).then(a.1.cmp(&b.1))).map(|(slot, _, travel)| (slot, travel))
 }
 
 /// Metres from the target of `last` (or from the robot's start) to the present place of `next`.
-pub(super) fn hop<D: Domain>(
+pub(super) fn travel_between<D: Domain>(
     m: &D,
     from: &Departure<'_, D>,
     to: &PartialState<D>,
@@ -118,14 +119,14 @@ pub(super) fn hop<D: Domain>(
 ) -> f64 {
     let Some(at) = from.state.object(next) else { return 0.0 };
     match (last.and_then(|id| Some((id, to.object(id)?))), from.working_point) {
-        (Some(done), _) => m.hop(done, (next, at)),
+        (Some(done), _) => m.travel_between(done, (next, at)),
         (None, Some(point)) => m.reach_from(point, &from.state.robot, next, at),
         (None, None) => m.reach(&from.state.robot, next, at),
     }
 }
 
 /// Metres from the last object's target to the robot's own target.
-pub(super) fn last_leg<D: Domain>(m: &D, from: &State<D>, to: &PartialState<D>, last: Option<ObjectId>) -> f64 {
+pub(super) fn last_stretch<D: Domain>(m: &D, from: &State<D>, to: &PartialState<D>, last: Option<ObjectId>) -> f64 {
     if to.robot().is_none() {
         return 0.0;
     }

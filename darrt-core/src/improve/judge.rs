@@ -8,9 +8,9 @@ use rand::Rng;
 use super::roadmap::{Id, Roadmap, Verdict};
 use crate::budget::Stop;
 use crate::domain::Domain;
+use crate::lazy_validation::validate_step;
 use crate::partial::PartialState;
 use crate::plan::Step;
-use crate::settle::settled;
 use crate::shorten::joined;
 use crate::state::{ComponentId, ObjectId, State};
 
@@ -89,8 +89,8 @@ impl<D: Domain> Roadmap<'_, D> {
 
     fn may_turn(&self, step: &Step<D>) -> bool {
         self.extender
-            .reroute
-            .is_some_and(|reroute| reroute.is_free_to_turn(self.extender.problem.domain(), &step.instance))
+            .local_repair
+            .is_some_and(|local_repair| local_repair.is_free_to_turn(self.extender.problem.domain(), &step.instance))
     }
 
     /// Finds the way of a link that is guessed, and judges one that is known.
@@ -166,7 +166,7 @@ impl<D: Domain> Roadmap<'_, D> {
             let straight_s = self.cost.seconds(m, &step.instance, &here, step.until);
             let mut takes_s = straight_s;
             if *is_blocked {
-                let (around, lost) = settled(&self.extender, &here, step.clone(), rng).ok()?;
+                let (around, lost) = validate_step(&self.extender, &here, step.clone(), rng).ok()?;
                 *step = around;
                 takes_s = self.cost.seconds(m, &step.instance, &here, step.until);
                 self.around.learn(straight_s, takes_s);

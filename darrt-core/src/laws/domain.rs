@@ -20,8 +20,8 @@ pub const POINT: &str = "domain.point: two points of an object lie no farther ap
 /// A lower bound on reach.
 pub const REACH_AT_LEAST: &str =
     "domain.reach-at-least: reach_at_least of the gap between working point and object is at most reach, and grows";
-/// Hop is a measure.
-pub const HOP: &str = "domain.hop: hop is finite and not negative";
+/// Travel between objects is a measure.
+pub const TRAVEL_BETWEEN: &str = "domain.travel-between: the travel between two objects is finite and not negative";
 /// What goes on from where it was made for.
 pub const MAY_GO_ON: &str = "domain.may-go-on: a motion may begin in the mode that it was made for, and in no other in which other objects are carried";
 /// What is carried.
@@ -34,11 +34,11 @@ pub const NAMES: &str = "domain.names: every component has a name of its own";
 
 /// Pure.
 pub const PURE: &str = "domain.pure: the same question has the same answer, bit for bit, whenever it is asked";
-/// Hops there and back.
-pub const HOP_SYMMETRIC: &str = "domain.hop-symmetric: the hop from one object to another is as long as the hop back";
-/// Hops over a third.
-pub const HOP_TRIANGLE: &str =
-    "domain.hop-triangle: a hop is at most as long as two hops over a third object, and the way around that";
+/// Travel between objects there and back.
+pub const TRAVEL_BETWEEN_SYMMETRIC: &str =
+    "domain.travel-between-symmetric: the travel from one object to another is as long as the travel back";
+/// Travel between objects over a third.
+pub const TRAVEL_BETWEEN_TRIANGLE: &str = "domain.travel-between-triangle: the travel to an object is at most as long as that over a third object, and the way around that";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
@@ -47,14 +47,14 @@ pub const LAWS: &[&str] = &[
     REACH_FROM,
     POINT,
     REACH_AT_LEAST,
-    HOP,
+    TRAVEL_BETWEEN,
     MAY_GO_ON,
     CARRIED,
     WITHOUT_ROBOT,
     NAMES,
     PURE,
-    HOP_SYMMETRIC,
-    HOP_TRIANGLE,
+    TRAVEL_BETWEEN_SYMMETRIC,
+    TRAVEL_BETWEEN_TRIANGLE,
 ];
 
 /// The laws of a domain and of all its component spaces, for three states, two parameters in `[0, 1]` and
@@ -88,10 +88,10 @@ pub fn check_domain<D: Domain>(
         }
         names(m)?;
         travel(m, a, b)?;
-        hops(m, [a, b, c])?;
+        travels_between(m, [a, b, c])?;
         let mut rng = rng_of(&(a, b, seed));
         let [x, y] = [a, b].map(|state| cornered(m, state, &mut rng));
-        let corner = travel(m, &x, &y).and_then(|()| hops(m, [&x, &y, c]));
+        let corner = travel(m, &x, &y).and_then(|()| travels_between(m, [&x, &y, c]));
         corner.map_err(|broken| broken.of("in a corner"))?;
         for ((call, was), (_, is)) in before.iter().zip(answers(m, a, b)) {
             alike(PURE, &is, was).map_err(|broken| broken.of(call))?;
@@ -130,7 +130,7 @@ pub(super) fn answers<D: Domain>(m: &D, a: &State<D>, b: &State<D>) -> Vec<(&'st
         say("reach_at_least", &|| format!("{:?}", m.reach_at_least(id, 1.5)));
         let next = ObjectId::new((i + 1) % a.objects.len());
         if let Some(there) = b.object(next) {
-            say("hop", &|| format!("{:?}", m.hop((id, p), (next, there))));
+            say("travel_between", &|| format!("{:?}", m.travel_between((id, p), (next, there))));
         }
     }
     all
@@ -171,8 +171,8 @@ fn without_robot<D: Domain>(m: &D, a: &State<D>, said: &[(&'static str, String)]
     Ok(())
 }
 
-/// Hops between three places, each of another object if there are as many.
-fn hops<D: Domain>(m: &D, [a, b, c]: [&State<D>; 3]) -> Result<(), Broken> {
+/// Travel between objects between three places, each of another object if there are as many.
+fn travels_between<D: Domain>(m: &D, [a, b, c]: [&State<D>; 3]) -> Result<(), Broken> {
     let count = a.objects.len();
     for i in 0..count {
         let ids = [i, (i + 1) % count, (i + 2) % count].map(ObjectId::new);
@@ -180,8 +180,8 @@ fn hops<D: Domain>(m: &D, [a, b, c]: [&State<D>; 3]) -> Result<(), Broken> {
             continue;
         };
         let of = |broken: Broken| broken.of(m.component_name(ComponentId::Object(ids[1])));
-        let (there, back) = (m.hop((ids[0], p), (ids[1], q)), m.hop((ids[1], q), (ids[0], p)));
-        at_most(HOP_SYMMETRIC, (there - back).abs(), 0.0, SLACK * (1.0 + there)).map_err(|broken| {
+        let (there, back) = (m.travel_between((ids[0], p), (ids[1], q)), m.travel_between((ids[1], q), (ids[0], p)));
+        at_most(TRAVEL_BETWEEN_SYMMETRIC, (there - back).abs(), 0.0, SLACK * (1.0 + there)).map_err(|broken| {
             of(Broken { left: format!("{there:?}").into(), right: format!("{back:?}").into(), ..broken })
         })?;
         // What acts on an object does so from somewhere around it; how far that is from its middle the domain says by its
@@ -201,9 +201,10 @@ fn hops<D: Domain>(m: &D, [a, b, c]: [&State<D>; 3]) -> Result<(), Broken> {
             continue;
         }
         let around = around.into_iter().fold(0.0, f64::max);
-        let onwards = m.hop((ids[1], q), (ids[2], r));
+        let onwards = m.travel_between((ids[1], q), (ids[2], r));
         let over = there + onwards + around;
-        at_most(HOP_TRIANGLE, m.hop((ids[0], p), (ids[2], r)), over, SLACK * (1.0 + over)).map_err(of)?;
+        at_most(TRAVEL_BETWEEN_TRIANGLE, m.travel_between((ids[0], p), (ids[2], r)), over, SLACK * (1.0 + over))
+            .map_err(of)?;
     }
     Ok(())
 }
@@ -247,7 +248,7 @@ fn travel<D: Domain>(m: &D, a: &State<D>, b: &State<D>) -> Result<(), Broken> {
             at_most(POINT, points, metres, SLACK * (1.0 + metres)).map_err(of)?;
         }
         for (j, q) in b.objects.iter().enumerate() {
-            measure(HOP, m.hop((id, p), (ObjectId::new(j), q))).map_err(of)?;
+            measure(TRAVEL_BETWEEN, m.travel_between((id, p), (ObjectId::new(j), q))).map_err(of)?;
         }
     }
     Ok(())

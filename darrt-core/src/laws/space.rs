@@ -44,10 +44,11 @@ pub const SAMPLE_INSIDE: &str = "space.sample-inside: samples lie in the space";
 pub const SAMPLE_SEEDED: &str = "space.sample-seeded: the same generator gives the same sample";
 /// Sampling: covering.
 pub const SAMPLE_COVERS: &str = "space.sample-covers: samples come near every configuration of the space";
-/// Shadow: a lower bound.
-pub const SHADOW: &str = "space.shadow: over the coordinates of any groups, two shadows lie no farther apart than the overlay of these groups";
-/// Shadow: alike.
-pub const SHADOW_ALIKE: &str = "space.shadow-alike: every shadow has the same groups in the same order";
+/// Index coordinates: a lower bound.
+pub const COORDINATES: &str = "space.index-coordinates: over the coordinates of any groups, those of two configurations lie no farther apart than the overlay of these groups";
+/// Index coordinates: alike.
+pub const COORDINATES_ALIKE: &str =
+    "space.index-coordinates-alike: those of every configuration have the same groups in the same order";
 /// Overlay: all and none.
 pub const OVERLAY_ENDS: &str = "space.overlay-ends: overlay of all groups is the target, of no group the beginning";
 /// Overlay: groups are independent.
@@ -107,8 +108,8 @@ pub const LAWS: &[&str] = &[
     SAMPLE_INSIDE,
     SAMPLE_SEEDED,
     SAMPLE_COVERS,
-    SHADOW,
-    SHADOW_ALIKE,
+    COORDINATES,
+    COORDINATES_ALIKE,
     OVERLAY_ENDS,
     OVERLAY_GROUPS,
     OVERLAY_INSIDE,
@@ -162,7 +163,7 @@ pub fn check_component_space<S: ComponentSpace>(
         interpolation(space, claims, [a, b], ts)?;
         samples(space, seed)?;
         overlays(space, [a, b, c])?;
-        shadows(space, claims, [a, b])?;
+        index_coordinates(space, claims, [a, b])?;
         extremes::resolution(space, claims, [a, b])?;
         if claims.hears_all {
             extremes::hears(space, a)?;
@@ -176,22 +177,26 @@ pub fn check_component_space<S: ComponentSpace>(
     watched(&about, check).map_err(|broken| broken.replayed_by(about))
 }
 
-fn shadow_of<S: ComponentSpace>(space: &S, q: &S::Config) -> Vec<(u32, f64)> {
+fn coordinates_of<S: ComponentSpace>(space: &S, q: &S::Config) -> Vec<(u32, f64)> {
     let mut all = Vec::new();
-    space.shadow(q, &mut |group, x| all.push((group, x)));
+    space.index_coordinates(q, &mut |group, x| all.push((group, x)));
     all
 }
 
-fn shadows<S: ComponentSpace>(space: &S, claims: &SpaceClaims, [a, b]: [&S::Config; 2]) -> Result<(), Broken> {
-    let (of_a, of_b) = (shadow_of(space, a), shadow_of(space, b));
+fn index_coordinates<S: ComponentSpace>(
+    space: &S,
+    claims: &SpaceClaims,
+    [a, b]: [&S::Config; 2],
+) -> Result<(), Broken> {
+    let (of_a, of_b) = (coordinates_of(space, a), coordinates_of(space, b));
     let groups = |all: &[(u32, f64)]| all.iter().map(|(group, _)| *group).collect::<Vec<_>>();
-    equal(SHADOW_ALIKE, &groups(&of_a), &groups(&of_b))?;
+    equal(COORDINATES_ALIKE, &groups(&of_a), &groups(&of_b))?;
     let single = (0..32).map(GroupSet::only).filter(|group| space.groups().covers(*group));
     for named in single.chain([space.groups()]) {
         let pairs = of_a.iter().zip(&of_b).filter(|((group, _), _)| named.contains(*group));
         let apart = pairs.map(|((_, x), (_, y))| (x - y).powi(2)).sum::<f64>().sqrt();
         let metres = space.distance(a, &space.overlay(a, b, named));
-        at_most(SHADOW, apart, metres, claims.slack_at(metres) * 1e-3)?;
+        at_most(COORDINATES, apart, metres, claims.slack_at(metres) * 1e-3)?;
     }
     Ok(())
 }

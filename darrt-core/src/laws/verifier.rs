@@ -69,7 +69,7 @@ impl<D: Domain> Judged<'_, D> {
 }
 
 /// One way to break a plan: `None` if this plan cannot be broken like this.
-struct Way<D: Domain> {
+struct Tampering<D: Domain> {
     name: &'static str,
     change: fn(&forge::Forge<'_, D>, &mut crate::random::Stream) -> Option<Plan<D>>,
 }

@@ -7,7 +7,7 @@ use crate::domain::Domain;
 use crate::space::ComponentSpace;
 use crate::state::State;
 
-/// Visits its states in order; the parameter is proportional to the travel bound of each leg.
+/// Visits its states in order; the parameter is proportional to the travel bound of each segment.
 ///
 /// The mode is that of the first state at `t = 0`, that of the last at `t = 1`, and `during` in between.
 pub struct Waypoints<D: Domain> {
@@ -19,18 +19,21 @@ pub struct Waypoints<D: Domain> {
 }
 
 impl<D: Domain> Waypoints<D> {
-    /// A motion through `states`, where `legs_m[i]` bounds the travel of every point between states `i`
-    /// and `i + 1`. `None` unless there are at least two states and one finite, non-negative length per leg.
-    pub fn new(states: Vec<State<D>>, legs_m: &[f64], during: D::Mode) -> Option<Self> {
-        if states.len() < 2 || legs_m.len() + 1 != states.len() || legs_m.iter().any(|l| !l.is_finite() || *l < 0.0) {
+    /// A motion through `states`, where `lengths_m[i]` bounds the travel of every point between states `i`
+    /// and `i + 1`. `None` unless there are at least two states and one finite, non-negative length per segment.
+    pub fn new(states: Vec<State<D>>, lengths_m: &[f64], during: D::Mode) -> Option<Self> {
+        if states.len() < 2
+            || lengths_m.len() + 1 != states.len()
+            || lengths_m.iter().any(|l| !l.is_finite() || *l < 0.0)
+        {
             return None;
         }
-        let length_m: f64 = legs_m.iter().sum();
+        let length_m: f64 = lengths_m.iter().sum();
         let mut travelled = 0.0;
         let mut knots = vec![0.0];
-        for (i, leg) in legs_m.iter().enumerate() {
-            travelled += leg;
-            let last = i + 1 == legs_m.len();
+        for (i, segment) in lengths_m.iter().enumerate() {
+            travelled += segment;
+            let last = i + 1 == lengths_m.len();
             knots.push(if last || length_m <= 0.0 {
                 if last { 1.0 } else { 0.0 }
             } else {
@@ -53,13 +56,13 @@ impl<D: Domain> Motion<D> for Waypoints<D> {
     fn at_into(&self, m: &D, t: f64, out: &mut State<D>) {
         let t = t.clamp(0.0, 1.0);
         if let (true, Some(first)) = (t <= 0.0, self.states.first()) {
-            // A first leg of no length would hide its state (and mode) behind the next.
+            // A first segment of no length would hide its state (and mode) behind the next.
             out.clone_from(first);
             return;
         }
-        let leg = self.knots.partition_point(|k| *k <= t).clamp(1, self.knots.len() - 1);
-        let (Some(a), Some(b)) = (self.states.get(leg - 1), self.states.get(leg)) else { return };
-        let (Some(start), Some(end)) = (self.knots.get(leg - 1), self.knots.get(leg)) else { return };
+        let segment = self.knots.partition_point(|k| *k <= t).clamp(1, self.knots.len() - 1);
+        let (Some(a), Some(b)) = (self.states.get(segment - 1), self.states.get(segment)) else { return };
+        let (Some(start), Some(end)) = (self.knots.get(segment - 1), self.knots.get(segment)) else { return };
         let s = if end > start { ((t - start) / (end - start)).clamp(0.0, 1.0) } else { 1.0 };
         out.robot = m.robot().interpolate(&a.robot, &b.robot, s);
         out.objects.clone_from(&a.objects);

@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::mirror::{LARGEST_M, Mirror, narrow};
+use super::coordinate_index::{CoordinateIndex, LARGEST_M, narrow};
 use crate::domain::Domain;
 use crate::partial::PartialState;
 use crate::space::ComponentSpace;
@@ -21,28 +21,28 @@ const LOST: f64 = 2e-6;
 /// And so much of the distance itself for the squares, their sum and the root.
 const KEPT: f32 = 1.0 - 4e-6;
 
-/// The mirrors of a tree. Targets for objects and targets for the robot alone constrain different coordinates, and a mirror
+/// The indices of a tree. Targets for objects and targets for the robot alone constrain different coordinates, and an index
 /// that is sorted by both serves neither.
 #[derive(Debug)]
-pub(crate) struct Mirrors {
+pub(crate) struct CoordinateIndices {
     /// Working point and points of the objects.
-    places: Mirror,
-    /// Shadow of the robot.
-    robot: Mirror,
+    places: CoordinateIndex,
+    /// Index coordinates of the robot.
+    robot: CoordinateIndex,
 }
 
 type Coordinates = SmallVec<[f64; 32]>;
 
-impl Mirrors {
-    /// Empty mirrors for the nodes of a tree in `m`; `robot` is any configuration.
+impl CoordinateIndices {
+    /// Empty indices for the nodes of a tree in `m`; `robot` is any configuration.
     pub(crate) fn new<D: Domain>(m: &D, robot: &RobotConfig<D>) -> Self {
         let mut count = 0;
-        m.robot().shadow(robot, &mut |_, _| count += 1);
-        Self { places: Mirror::new(POINT * (1 + m.objects().len())), robot: Mirror::new(count) }
+        m.robot().index_coordinates(robot, &mut |_, _| count += 1);
+        Self { places: CoordinateIndex::new(POINT * (1 + m.objects().len())), robot: CoordinateIndex::new(count) }
     }
 
     /// Both.
-    pub(crate) fn all(&mut self) -> [&mut Mirror; 2] {
+    pub(crate) fn all(&mut self) -> [&mut CoordinateIndex; 2] {
         [&mut self.places, &mut self.robot]
     }
 
@@ -62,7 +62,7 @@ impl Mirrors {
         }
         self.places.push(&all, placement, penalties_m);
         all.clear();
-        m.robot().shadow(&state.robot, &mut |_, x| all.push(x));
+        m.robot().index_coordinates(&state.robot, &mut |_, x| all.push(x));
         self.robot.push(&all, placement, penalties_m);
     }
 }
@@ -89,7 +89,7 @@ pub struct ObjectWay {
     pub reach_m: Lanes,
 }
 
-/// A target in the coordinates of the mirror.
+/// A target in the coordinates of the index.
 #[derive(Debug)]
 pub(crate) struct Aim {
     objects: SmallVec<[(usize, [f32; POINT]); 2]>,
@@ -100,16 +100,16 @@ pub(crate) struct Aim {
 }
 
 impl Aim {
-    /// The mirror that serves this target, and the target in its coordinates. `None` if one of them is too large to reckon
+    /// The index that serves this target, and the target in its coordinates. `None` if one of them is too large to reckon
     /// with, or no number.
     pub(crate) fn new<'a, D: Domain>(
         m: &D,
         to: &PartialState<D>,
-        mirrors: &'a Mirrors,
-    ) -> Option<(&'a Mirror, Self, Ways)> {
+        indices: &'a CoordinateIndices,
+    ) -> Option<(&'a CoordinateIndex, Self, Ways)> {
         let names_objects = to.objects().next().is_some();
-        let mirror = if names_objects { &mirrors.places } else { &mirrors.robot };
-        let mut scale_m = mirror.scale_m();
+        let coordinate_index = if names_objects { &indices.places } else { &indices.robot };
+        let mut scale_m = coordinate_index.scale_m();
         let mut is_plain = true;
         let mut take = |x: f64| {
             is_plain &= x.abs() <= LARGEST_M;
@@ -121,7 +121,7 @@ impl Aim {
         let mut robot = SmallVec::new();
         if let Some(target) = to.robot().filter(|_| !names_objects) {
             let mut row = 0;
-            m.robot().shadow(&target.config, &mut |group, x| {
+            m.robot().index_coordinates(&target.config, &mut |group, x| {
                 if target.groups.contains(group) {
                     robot.push((row, take(x)));
                 }
@@ -136,7 +136,7 @@ impl Aim {
             reach_m: [0.0; LANES],
         };
         let ways = Ways { objects: objects.iter().map(way).collect(), robot_m: to.robot().map(|_| [0.0; LANES]) };
-        is_plain.then_some((mirror, Self { objects, robot, lost_m: narrow(LOST * scale_m) }, ways))
+        is_plain.then_some((coordinate_index, Self { objects, robot, lost_m: narrow(LOST * scale_m) }, ways))
     }
 
     /// Bounds for nodes at the coordinates `lower`, or for boxes from `lower` to `upper`.

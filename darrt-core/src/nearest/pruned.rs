@@ -20,32 +20,32 @@ pub fn nearest_pruned<D: Domain>(
     bound: impl Fn(&Ways, &mut Lanes),
     measure: impl Fn(&Node<D>) -> f64,
 ) -> Option<NodeId> {
-    let aim = tree.mirrors().and_then(|mirrors| Aim::new(m, to, mirrors));
-    let Some((mirror, aim, mut ways)) = aim else { return nearest_node_by(tree, measure) };
+    let aim = tree.indices().and_then(|indices| Aim::new(m, to, indices));
+    let Some((coordinate_index, aim, mut ways)) = aim else { return nearest_node_by(tree, measure) };
     let mut best = Best { least: None };
     let look = |best: &mut Best, index: u32| {
         if let Some(node) = tree.at(index) {
             best.offer(measure(node) + tree.penalty_m(node), index);
         }
     };
-    for index in mirror.odd() {
+    for index in coordinate_index.odd() {
         look(&mut best, *index);
     }
     let mut open = BinaryHeap::with_capacity(4 * LANES);
-    open.push(Reverse(Open { at_least_m: 0.0, height: mirror.height() - 1, block: 0 }));
+    open.push(Reverse(Open { at_least_m: 0.0, height: coordinate_index.height() - 1, block: 0 }));
     let mut at_least = [0.0; LANES];
     while let Some(Reverse(Open { at_least_m, height, block })) = open.pop() {
         if best.rules_out(at_least_m) {
             break;
         }
-        let Some((lower, upper)) = mirror.block(height, block) else { continue };
+        let Some((lower, upper)) = coordinate_index.block(height, block) else { continue };
         aim.look(m, lower, upper, &mut ways);
         bound(&ways, &mut at_least);
         if height == 0 {
             let mut promising = (f32::INFINITY, None);
-            let (nodes, placements) = mirror.nodes(block);
+            let (nodes, placements) = coordinate_index.nodes(block);
             for (lane, (at_least_m, placement)) in at_least.iter_mut().zip(placements).enumerate() {
-                *at_least_m += super::mirror::narrow(tree.penalty_at(*placement));
+                *at_least_m += super::coordinate_index::narrow(tree.penalty_at(*placement));
                 if *at_least_m < promising.0 {
                     promising = (*at_least_m, Some(lane));
                 }
@@ -62,7 +62,9 @@ pub fn nearest_pruned<D: Domain>(
             }
             continue;
         }
-        for (lane, (at_least_m, penalty_m)) in at_least.iter().zip(mirror.penalties_m(height, block)).enumerate() {
+        for (lane, (at_least_m, penalty_m)) in
+            at_least.iter().zip(coordinate_index.penalties_m(height, block)).enumerate()
+        {
             let sum = at_least_m + penalty_m;
             // No number rules nothing out.
             let at_least_m = if sum.is_nan() { 0.0 } else { sum };

@@ -1,7 +1,7 @@
 //! `DARRTH`: the objects are planned first, as if the robot could pass through everything; the changes of primitive in that plan
 //! become subgoals, and the whole is planned from one to the next.
 //!
-//! Needs rules that can be told apart ([`Validity::without_robot`](crate::validity::Validity::without_robot)); without them it
+//! Needs rules that are separate for robot and objects ([`Validity::without_robot`](crate::validity::Validity::without_robot)); without them it
 //! is the search that its parts are. A subgoal says where the objects that the plan has moved so far stand when one primitive ends and another
 //! begins. One that is not reached within [`SUBGOAL_ITERATIONS`] is given up, and everything begins anew with other random
 //! numbers. The parts are searched by [`Darrt`], or by [`Connect`] (`DARRTHConnect`).
@@ -18,13 +18,13 @@ use super::connect::Connect;
 use super::{Darrt, Part, Planner, Start, Step, Strategy};
 use crate::domain::Domain;
 use crate::goal::{Goal, Reach};
+use crate::lazy_validation::NotValidated;
 use crate::observe::accounts::Accounts;
 use crate::partial::PartialState;
 use crate::pipeline::Unproved;
 use crate::plan::{Plan, Step as PlanStep};
 use crate::problem::Problem;
 use crate::random::{Purpose, stream};
-use crate::settle::Unsettled;
 use crate::state::{ObjectId, State};
 use crate::verify::{Refusal, Solution};
 
@@ -38,7 +38,7 @@ type Search<'p, D> = Box<dyn Planner<D> + 'p>;
 pub struct Hierarchical<'p, D: Domain> {
     /// The whole problem; judges what is put together, its tree is not grown.
     whole: Darrt<'p, D>,
-    /// The search of the whole problem, if the rules cannot be told apart.
+    /// The search of the whole problem, if the rules are not separate for robot and objects.
     alone: Option<Search<'p, D>>,
     problem: Problem<D>,
     relaxed: Option<Problem<D>>,
@@ -174,8 +174,8 @@ impl<'p, D: Domain> Hierarchical<'p, D> {
                         self.accounts.refused += 1;
                         step.refusal = Some(refusal);
                     }
-                    Unproved::Unsettled(Unsettled::Blocked(_, blame)) => self.accounts.withdraw(0, &blame),
-                    Unproved::Unsettled(Unsettled::Cancelled) => {}
+                    Unproved::NotValidated(NotValidated::Blocked(_, blame)) => self.accounts.withdraw(0, &blame),
+                    Unproved::NotValidated(NotValidated::Cancelled) => {}
                 }
                 self.begin_anew();
             }

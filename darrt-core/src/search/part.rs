@@ -10,12 +10,12 @@ use crate::budget::Interrupt;
 use crate::domain::Domain;
 use crate::extend::Extender;
 use crate::goal::Goal;
+use crate::lazy_validation::validate_step;
 use crate::partial::PartialState;
 use crate::pipeline::Pipeline;
 use crate::plan::Plan;
 use crate::problem::Problem;
 use crate::random::{Purpose, stream};
-use crate::settle::settled;
 use crate::state::{ObjectId, State};
 use crate::tree::NodeId;
 
@@ -114,8 +114,8 @@ pub(crate) fn best_of<D: Domain>(
 }
 
 fn extender<'a, D: Domain>(problem: &'a Problem<D>, strategy: &'a Strategy<D>) -> Extender<'a, D> {
-    let (options, reroute) = (&strategy.extend, strategy.reroute.as_deref());
-    Extender { problem, options, reroute, interrupt: Interrupt::NEVER }
+    let (options, local_repair) = (&strategy.extend, strategy.local_repair.as_deref());
+    Extender { problem, options, local_repair, interrupt: Interrupt::NEVER }
 }
 
 /// Where a plan leaves the objects that it moves.
@@ -134,7 +134,7 @@ fn beginning<D: Domain>(problem: &Problem<D>, strategy: &Strategy<D>, seed: u64,
     let rng = &mut stream(seed, 0, 0, Purpose::Shorten);
     let (mut here, mut steps) = (plan.start().clone(), Vec::new());
     for step in plan.steps() {
-        let Ok((step, _)) = settled(&extender, &here, step.clone(), rng) else { break };
+        let Ok((step, _)) = validate_step(&extender, &here, step.clone(), rng) else { break };
         here = step.instance.at(m, step.until, &here);
         steps.push(step);
     }

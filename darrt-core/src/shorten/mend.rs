@@ -6,8 +6,8 @@ use super::leap::{Leap, Old, leap};
 use super::rejoin::rejoin;
 use crate::domain::Domain;
 use crate::extend::Extender;
+use crate::lazy_validation::validate_steps;
 use crate::plan::Step;
-use crate::settle::settle;
 use crate::state::State;
 
 /// How often it is tried to go on from one place before that place is given up, and how often from the first.
@@ -45,7 +45,7 @@ pub(super) fn mend<D: Domain>(
     loop {
         if let Some(at) = next.take() {
             let end = old.end(done);
-            if let Ok(known) = settle(extender, &here, old.steps(at..end), rng) {
+            if let Ok(known) = validate_steps(extender, &here, old.steps(at..end), rng) {
                 steps.extend(known);
                 if done == old.placements.len() {
                     return Some(steps);
@@ -58,7 +58,7 @@ pub(super) fn mend<D: Domain>(
             *is_blocked.get_mut(done)? = true;
         } else if !*is_blocked.get(done)?
             && let Some(joint) = rejoin(extender, old, done, &here, &mut left, rng)
-            && let Ok(joining) = settle(extender, &here, joint.steps, rng)
+            && let Ok(joining) = validate_steps(extender, &here, joint.steps, rng)
         {
             steps.extend(joining);
             here = old.plan.at(m, joint.step - 1, 1.0)?;
@@ -67,8 +67,9 @@ pub(super) fn mend<D: Domain>(
         }
         let tries_left = if forks.is_empty() { FIRST_TRIES } else { TRIES };
         forks.push(Fork { kept: steps.len(), here: here.clone(), done, tries_left });
-        let judge =
-            &mut |here: &State<D>, _, steps: Vec<Step<D>>, rng: &mut dyn Rng| settle(extender, here, steps, rng).ok();
+        let judge = &mut |here: &State<D>, _, steps: Vec<Step<D>>, rng: &mut dyn Rng| {
+            validate_steps(extender, here, steps, rng).ok()
+        };
         loop {
             if left == 0 || extender.interrupt.stop().is_some() {
                 return None;

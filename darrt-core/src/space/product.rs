@@ -76,10 +76,10 @@ impl<A: ComponentSpace, B: ComponentSpace> ComponentSpace for Product<A, B> {
         self.second.numbers(&mut q.1, visit);
     }
 
-    fn shadow(&self, q: &Self::Config, mark: &mut dyn FnMut(u32, f64)) {
-        self.first.shadow(&q.0, mark);
+    fn index_coordinates(&self, q: &Self::Config, mark: &mut dyn FnMut(u32, f64)) {
+        self.first.index_coordinates(&q.0, mark);
         let by = self.first_groups();
-        self.second.shadow(&q.1, &mut |group, x| mark(group.saturating_add(by), x));
+        self.second.index_coordinates(&q.1, &mut |group, x| mark(group.saturating_add(by), x));
     }
 }
 

@@ -106,7 +106,7 @@ impl<const N: usize> ComponentSpace for RealBox<N> {
         self.contains(&q).then_some(q)
     }
 
-    fn shadow(&self, q: &[f64; N], mark: &mut dyn FnMut(u32, f64)) {
+    fn index_coordinates(&self, q: &[f64; N], mark: &mut dyn FnMut(u32, f64)) {
         q.iter().zip(&self.weight).for_each(|(x, w)| mark(0, w * x));
     }
 }

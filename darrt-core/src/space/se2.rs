@@ -60,10 +60,10 @@ impl ComponentSpace for Se2 {
         [x, y, self.heading.sample(rng)]
     }
 
-    fn shadow(&self, [x, y, yaw]: &[f64; 3], mark: &mut dyn FnMut(u32, f64)) {
+    fn index_coordinates(&self, [x, y, yaw]: &[f64; 3], mark: &mut dyn FnMut(u32, f64)) {
         mark(0, *x);
         mark(0, *y);
-        self.heading.shadow(yaw, mark);
+        self.heading.index_coordinates(yaw, mark);
     }
 }
 

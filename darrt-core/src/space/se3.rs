@@ -90,7 +90,7 @@ impl ComponentSpace for Se3 {
         Isometry3::from_parts(Translation3::from(position), uniform_rotation(rng))
     }
 
-    fn shadow(&self, q: &Isometry3<f64>, mark: &mut dyn FnMut(u32, f64)) {
+    fn index_coordinates(&self, q: &Isometry3<f64>, mark: &mut dyn FnMut(u32, f64)) {
         q.translation.vector.iter().for_each(|x| mark(0, *x));
     }
 }

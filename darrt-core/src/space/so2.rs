@@ -74,7 +74,7 @@ impl ComponentSpace for So2 {
         rng.random_range(-PI..=PI)
     }
 
-    fn shadow(&self, angle_rad: &f64, mark: &mut dyn FnMut(u32, f64)) {
+    fn index_coordinates(&self, angle_rad: &f64, mark: &mut dyn FnMut(u32, f64)) {
         // A point on the rim: no chord is longer than its arc.
         mark(0, self.metres_per_rad * angle_rad.cos());
         mark(0, self.metres_per_rad * angle_rad.sin());

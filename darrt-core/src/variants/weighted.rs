@@ -51,13 +51,13 @@ impl Weighted {
 
     fn at_least(&self, ways: &Ways, out: &mut Lanes) {
         // Rounded down, so that the weights make no bound too large.
-        let weight = |w: f64| crate::nearest::mirror::narrow(w * (1.0 - 1e-6));
+        let weight = |w: f64| crate::nearest::coordinate_index::narrow(w * (1.0 - 1e-6));
         *out = [0.0; crate::nearest::bounds::LANES];
         let robot = ways.robot_m.iter().map(|way_m| (weight(self.robot), way_m));
         let objects = ways.objects.iter().map(|object| (weight(self.object), &object.way_m));
         for (weight, way_m) in robot.chain(objects) {
             for (out, way) in out.iter_mut().zip(way_m) {
-                *out = crate::nearest::mirror::narrow(self.join(f64::from(*out), f64::from(weight * way)));
+                *out = crate::nearest::coordinate_index::narrow(self.join(f64::from(*out), f64::from(weight * way)));
             }
         }
     }

@@ -174,7 +174,7 @@ fn what_an_interrupt_cuts_off_counts_as_budget() {
         let asked = AtomicU32::new(0);
         let ask = || (asked.fetch_add(1, Ordering::Relaxed) >= instances).then_some(Stop::Cancelled);
         let interrupt = Interrupt::new(&ask);
-        let extender = Extender { problem: &problem, options: &options, reroute: None, interrupt };
+        let extender = Extender { problem: &problem, options: &options, local_repair: None, interrupt };
         extender.extend(problem.start(), &target, &mut rng(0))
     };
     let whole = extend_towards(&problem, &options, problem.start(), &target, &mut rng(0));

@@ -4,12 +4,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use darrt_core::extend::{ExtendOptions, Extender, Extension};
+use darrt_core::local_repair::{LocalRepair, NoWay};
 use darrt_core::motion::Instance;
 use darrt_core::observe::accounts::Bucket;
 use darrt_core::partial::PartialState;
 use darrt_core::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use darrt_core::problem::Problem;
-use darrt_core::reroute::{NoWay, Reroute};
 use darrt_core::state::{ComponentId, ComponentSet, State};
 use darrt_core::validity::{Blame, BlockKind, FreePrefix, Validity};
 use rand::Rng;
@@ -91,12 +91,12 @@ struct Around {
     calls: AtomicUsize,
 }
 
-impl Reroute<World> for Around {
+impl LocalRepair<World> for Around {
     fn is_free_to_turn(&self, _: &World, instance: &Instance<World>) -> bool {
         instance.primitive.name() == "go"
     }
 
-    fn reroute(
+    fn repair(
         &self,
         m: &World,
         _: &dyn Validity<World>,
@@ -142,7 +142,7 @@ fn extend(chain: &[Link], known: &[Link], taken: [f64; 2], finds: bool) -> Seen 
     let around = Around { finds, calls: AtomicUsize::new(0) };
     let options = ExtendOptions::default();
     let interrupt = darrt_core::budget::Interrupt::NEVER;
-    let extender = Extender { problem: &problem, options: &options, reroute: Some(&around), interrupt };
+    let extender = Extender { problem: &problem, options: &options, local_repair: Some(&around), interrupt };
     let target = PartialState::anywhere(problem.domain()).with_robot(problem.domain(), chain.last().unwrap().1);
     let extension = extender.extend(problem.start(), &target, &mut rng(0));
     let asked = asked.lock().unwrap().clone();

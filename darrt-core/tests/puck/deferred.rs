@@ -6,15 +6,15 @@ use darrt_core::budget::Interrupt;
 use darrt_core::distance::{Distance, GreedyVisit};
 use darrt_core::extend::{ExtendOptions, Extender};
 use darrt_core::laws::check_planner;
+use darrt_core::lazy_validation::{NotValidated, validate_steps};
+use darrt_core::local_repair::{LocalRepair, NoWay};
 use darrt_core::motion::{Instance, Waypoints};
 use darrt_core::nearest::linear::nearest_by;
 use darrt_core::observe::Silent;
 use darrt_core::partial::PartialState;
 use darrt_core::plan::Step;
 use darrt_core::problem::Problem;
-use darrt_core::reroute::{NoWay, Reroute};
 use darrt_core::search::Strategy;
-use darrt_core::settle::{Unsettled, settle};
 use darrt_core::shorten::ShortenOptions;
 use darrt_core::solve::solve;
 use darrt_core::state::{ComponentSet, State};
@@ -55,12 +55,12 @@ fn walled() -> Problem<World> {
 /// Above the wall.
 struct Above;
 
-impl Reroute<World> for Above {
+impl LocalRepair<World> for Above {
     fn is_free_to_turn(&self, _: &World, instance: &Instance<World>) -> bool {
         instance.primitive.name() == "Transit"
     }
 
-    fn reroute(
+    fn repair(
         &self,
         m: &World,
         _: &dyn Validity<World>,
@@ -83,7 +83,8 @@ fn a_blocked_motion_goes_another_way_or_is_named() {
     let m = problem.domain();
     let start = problem.start().clone();
     let there = PartialState::anywhere(m).with_robot(m, [2.0, 0.5]);
-    let extender = |reroute| Extender { problem: &problem, options: &DEFER, reroute, interrupt: Interrupt::NEVER };
+    let extender =
+        |local_repair| Extender { problem: &problem, options: &DEFER, local_repair, interrupt: Interrupt::NEVER };
     let steps = |extender: &Extender<'_, World>| {
         let reached = extender.extend(&start, &there, &mut rng(0)).reached;
         assert_eq!(reached.iter().map(|r| r.t).collect::<Vec<_>>(), [1.0], "taken as free, and only its end is a node");
@@ -93,22 +94,22 @@ fn a_blocked_motion_goes_another_way_or_is_named() {
             .collect::<Vec<_>>()
     };
     let straight = extender(None);
-    match settle(&straight, &start, steps(&straight), &mut rng(0)) {
-        Err(Unsettled::Blocked(instance, blame)) => {
+    match validate_steps(&straight, &start, steps(&straight), &mut rng(0)) {
+        Err(NotValidated::Blocked(instance, blame)) => {
             assert_eq!(instance.primitive.name(), "Transit");
             assert!(blame.to_string().contains("robot against obstacle"), "{blame}");
         }
         other => panic!("{other:?}"),
     }
-    let around = extender(Some(&Above as &dyn Reroute<World>));
-    let settled = settle(&around, &start, steps(&around), &mut rng(0)).unwrap();
-    let [step] = &settled[..] else { panic!("{settled:?}") };
+    let around = extender(Some(&Above as &dyn LocalRepair<World>));
+    let validated = validate_steps(&around, &start, steps(&around), &mut rng(0)).unwrap();
+    let [step] = &validated[..] else { panic!("{validated:?}") };
     assert_eq!(problem.validity().free_prefix(m, &step.instance, &start).blame, None);
     assert_eq!(step.instance.at(m, 1.0, &start).robot, [2.0, 0.5]);
     // What has been judged before is not judged again.
     let eager = ExtendOptions { defer: false, ..DEFER };
     let eager = Extender { options: &eager, ..straight };
-    assert!(settle(&eager, &start, steps(&straight), &mut rng(0)).is_ok());
+    assert!(validate_steps(&eager, &start, steps(&straight), &mut rng(0)).is_ok());
 }
 
 /// By the rules all is free; with a care of 1 only motions called "narrow" or "wide" are, with 2 only "wide" ones.
@@ -141,12 +142,12 @@ impl Validity<World> for Wary {
 /// By care: what it finds another way for, called so.
 struct Finds([Option<&'static str>; 3]);
 
-impl Reroute<World> for Finds {
+impl LocalRepair<World> for Finds {
     fn is_free_to_turn(&self, _: &World, instance: &Instance<World>) -> bool {
         instance.primitive.name() == "go"
     }
 
-    fn reroute(
+    fn repair(
         &self,
         m: &World,
         _: &dyn Validity<World>,
@@ -168,22 +169,26 @@ fn what_may_turn_aside_goes_with_as_much_care_as_a_way_is_found_for() {
     let problem = Problem::new(parts).unwrap();
     let start = problem.start().clone();
     let there = State { robot: [1.0, 0.3], ..start.clone() };
-    let settled = |name, finds| {
+    let validated = |name, finds| {
         let instance = Arc::new(Instance { primitive: called(name), ..robot_instance(&start, &there) });
-        let reroute = Finds(finds);
-        let extender =
-            Extender { problem: &problem, options: &DEFER, reroute: Some(&reroute), interrupt: Interrupt::NEVER };
-        settle(&extender, &start, [Step { instance, until: 1.0, primitive: 0 }], &mut rng(0)).unwrap()[0]
+        let local_repair = Finds(finds);
+        let extender = Extender {
+            problem: &problem,
+            options: &DEFER,
+            local_repair: Some(&local_repair),
+            interrupt: Interrupt::NEVER,
+        };
+        validate_steps(&extender, &start, [Step { instance, until: 1.0, primitive: 0 }], &mut rng(0)).unwrap()[0]
             .instance
             .primitive
             .name()
     };
-    assert_eq!(settled("wide", [None; 3]), "wide");
-    assert_eq!(settled("go", [None, Some("narrow"), Some("wide")]), "wide");
-    assert_eq!(settled("go", [None, Some("narrow"), Some("narrow")]), "narrow", "what is found is judged");
-    assert_eq!(settled("go", [None, Some("narrow"), None]), "narrow");
-    assert_eq!(settled("go", [None; 3]), "go", "free by the rules");
-    assert_eq!(settled("push", [None, Some("narrow"), Some("wide")]), "push", "it must go as it does");
+    assert_eq!(validated("wide", [None; 3]), "wide");
+    assert_eq!(validated("go", [None, Some("narrow"), Some("wide")]), "wide");
+    assert_eq!(validated("go", [None, Some("narrow"), Some("narrow")]), "narrow", "what is found is judged");
+    assert_eq!(validated("go", [None, Some("narrow"), None]), "narrow");
+    assert_eq!(validated("go", [None; 3]), "go", "free by the rules");
+    assert_eq!(validated("push", [None, Some("narrow"), Some("wide")]), "push", "it must go as it does");
 }
 
 #[test]

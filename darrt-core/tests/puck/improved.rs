@@ -25,7 +25,7 @@ fn improvement(draws_per_step: usize, shortcuts_per_step: usize) -> Improvement<
 }
 
 fn extender(problem: &Problem<World>) -> Extender<'_, World> {
-    Extender { problem, options: &EXTEND, reroute: None, interrupt: Interrupt::NEVER }
+    Extender { problem, options: &EXTEND, local_repair: None, interrupt: Interrupt::NEVER }
 }
 
 fn seconds(problem: &Problem<World>, plan: &Plan<World>) -> f64 {

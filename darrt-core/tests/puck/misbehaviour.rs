@@ -43,7 +43,7 @@ fn poisoned_samples_leave_no_trace_in_the_tree() {
             sampler: Box::new(Poison),
             distance,
             extend: ExtendOptions::default(),
-            reroute: None,
+            local_repair: None,
             try_penalty_m: 0.0,
             shorten: darrt_core::shorten::ShortenOptions::default(),
             improve: None,
@@ -115,18 +115,18 @@ fn a_plan_may_end_in_the_middle_of_an_instance() {
 }
 
 #[test]
-fn waypoints_are_exact_at_their_ends_whatever_the_legs() {
+fn waypoints_are_exact_at_their_ends_whatever_the_segments() {
     let problem = small().problem().unwrap();
     let (m, a) = (problem.domain(), problem.start());
     let mut b = State { robot: [0.7, 0.4], ..a.clone() };
     b.mode = b.mode.touching(Some(id(0)));
     let c = State { robot: [-0.0, 0.3], ..a.clone() };
-    for legs in [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 2.0]] {
-        let motion = Waypoints::new(vec![a.clone(), b.clone(), c.clone()], &legs, b.mode.clone()).unwrap();
+    for segments in [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 2.0]] {
+        let motion = Waypoints::new(vec![a.clone(), b.clone(), c.clone()], &segments, b.mode.clone()).unwrap();
         let mut out = c.clone();
         for (t, expected) in [(0.0, a), (-1.0, a), (1.0, &c), (7.0, &c)] {
             motion.at_into(m, t, &mut out);
-            assert_eq!(format!("{out:?}"), format!("{expected:?}"), "{legs:?} at {t}");
+            assert_eq!(format!("{out:?}"), format!("{expected:?}"), "{segments:?} at {t}");
         }
         motion.at_into(m, 0.5, &mut out);
         assert_eq!(out.mode, b.mode);

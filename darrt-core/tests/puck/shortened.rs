@@ -54,7 +54,7 @@ fn every_shorter_plan_is_right_however_early_the_effort_ends() {
         // Of little depth an extension reaches only what is near: the old steps stay up to there.
         for max_depth in [1, 2, 20] {
             let (limits, interrupt) = (ExtendOptions { max_depth, ..strategy.extend }, Interrupt::NEVER);
-            let extender = Extender { problem, options: &limits, reroute: None, interrupt };
+            let extender = Extender { problem, options: &limits, local_repair: None, interrupt };
             for (extensions, shorter) in [0, 2, 8, 30, 100].into_iter().zip(&mut shorter) {
                 let effort = ShortenOptions { extensions };
                 let Some(short) = shorten(&extender, &plan, effort, &mut rng(seed)) else { continue };
@@ -131,7 +131,8 @@ fn old_steps_follow_on_new_ones() {
         parts.validity = Box::new(OneWay { inner: parts.validity, barred });
         let problem = Problem::new(parts).unwrap();
         let limits = ExtendOptions { spacing_m: 100.0, defer, ..ExtendOptions::default() };
-        let extender = Extender { problem: &problem, options: &limits, reroute: None, interrupt: Interrupt::NEVER };
+        let extender =
+            Extender { problem: &problem, options: &limits, local_repair: None, interrupt: Interrupt::NEVER };
         let plan = pushed_thrice(&extender);
         let short = shorten(&extender, &plan, ShortenOptions { extensions: 100 }, &mut rng(0)).unwrap();
         let is_old = |step: &Step<World>| plan.steps().iter().any(|old| Arc::ptr_eq(&old.instance, &step.instance));

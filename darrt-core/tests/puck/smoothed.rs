@@ -36,7 +36,7 @@ fn cost() -> TravelCost {
 }
 
 fn extender<'a>(problem: &'a Problem<World>, options: &'a ExtendOptions) -> Extender<'a, World> {
-    Extender { problem, options, reroute: None, interrupt: Interrupt::NEVER }
+    Extender { problem, options, local_repair: None, interrupt: Interrupt::NEVER }
 }
 
 /// The plan that goes from target to target.

@@ -51,7 +51,7 @@ pub(crate) fn strategy(
         sampler: Box::new(GoalBiased::new(sampler, 0.2).unwrap()),
         distance: Box::new(distance),
         extend: ExtendOptions::default(),
-        reroute: None,
+        local_repair: None,
         try_penalty_m: 0.0,
         shorten: darrt_core::shorten::ShortenOptions::default(),
         improve: None,

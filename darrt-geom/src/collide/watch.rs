@@ -1,13 +1,13 @@
-//! Watching a motion: which pairs may come near on a leg of it, and until when each is known to be clear.
+//! Watching a motion: which pairs may come near on a segment of it, and until when each is known to be clear.
 //!
-//! Most pairs are too far apart to matter on the whole leg and are looked at once. Each of the others is looked at again
+//! Most pairs are too far apart to matter on the whole segment and are looked at once. Each of the others is looked at again
 //! only when what was known of it has run out, or when it is what keeps the motion from going farther.
 
 use super::scan::{hit_plane, too_near};
 use super::{CollisionModel, Hit, Poses, Query, Scratch};
 use crate::body_set::{BodyIndex, BodySet};
 
-/// How the bodies may travel on a leg of a motion.
+/// How the bodies may travel on a segment of a motion.
 #[derive(Debug, Clone, Copy)]
 pub struct Travel<'a> {
     /// By body: how many metres any point of it travels at most per unit of the motion's parameter; bodies beyond the end
@@ -18,7 +18,7 @@ pub struct Travel<'a> {
     pub chain: &'a BodySet,
     /// The parameter at the current poses.
     pub from: f64,
-    /// The parameter at the end of the leg.
+    /// The parameter at the end of the segment.
     pub to: f64,
 }
 
@@ -44,7 +44,7 @@ pub(super) enum Other {
     Plane(usize),
 }
 
-/// A pair that may come near before the leg ends.
+/// A pair that may come near before the segment ends.
 #[derive(Debug, Clone, Copy)]
 struct Watched {
     /// Number in [`CollisionModel::solids`].
@@ -58,7 +58,7 @@ struct Watched {
     until: f64,
 }
 
-/// What is watched on one leg.
+/// What is watched on one segment.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Watch {
     pairs: Vec<Watched>,
@@ -66,7 +66,7 @@ pub(super) struct Watch {
 }
 
 impl CollisionModel {
-    /// Begins to watch a leg that starts at the current poses: afterwards [`CollisionModel::free_until`] answers for it.
+    /// Begins to watch a segment that starts at the current poses: afterwards [`CollisionModel::free_until`] answers for it.
     /// Of `query` the cap does not count. Pairs of which neither body travels are not looked at.
     pub fn watch(&self, scratch: &mut Scratch, query: &Query<'_>, travel: &Travel<'_>) {
         self.ensure_fits(scratch);
@@ -78,7 +78,7 @@ impl CollisionModel {
         let clearance_of = |a, b| query.clearance_of(a, b).max(0.0);
         let too_near = too_near(query);
         let span = travel.to - travel.from;
-        // A pair farther apart than this does not matter on this leg.
+        // A pair farther apart than this does not matter on this segment.
         let enough = |speed: f64| (most + span * speed).max(too_near);
         for body in query.moved.intersection(&self.moving).iter() {
             let registered = &self.bodies[body.get()];
@@ -130,7 +130,7 @@ impl CollisionModel {
     }
 
     /// The parameter up to which nothing that is watched can come nearer than its clearance, when the bodies stand where
-    /// they are at `now`: at most `now + cap`, and at most the end of the leg.
+    /// they are at `now`: at most `now + cap`, and at most the end of the segment.
     ///
     /// # Errors
     /// A pair that is nearer than its clearance now, touches (to 1e-7 m) or overlaps.

@@ -366,7 +366,7 @@ pub struct SchemaOptions {
 const BENCH_EXAMPLES: &str = "\
 Examples:
   darrt bench                                       the paper's table, ten seeds each
-  darrt bench plate3 --seeds 0..100 --variants default,no-reroute,euclidean --report page.html
+  darrt bench plate3 --seeds 0..100 --variants default,no-local-repair,euclidean --report page.html
   darrt bench --variants all --seeds 20 --shard 1/2 --out one.jsonl     on one machine
   darrt bench --variants all --seeds 20 --shard 2/2 --out two.jsonl     on another
   darrt bench --merge one.jsonl two.jsonl --report page.html --ompl logs

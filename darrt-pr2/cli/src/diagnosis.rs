@@ -4,13 +4,13 @@ use std::time::Duration;
 
 use darrt_core::budget::Stop;
 use darrt_core::observe::accounts::{Accounts, Bucket};
-use darrt_primitives::surroundings::NearPair;
+use darrt_primitives::collision_scene::NearPair;
 
 use darrt_task::diagnosis::{Diagnosis, Outcome};
 use darrt_task::planning::PlanResult;
 use darrt_task::text::counted;
 
-pub(crate) mod words;
+pub(crate) mod text;
 
 /// Pairs of bodies that are named.
 const PAIRS: usize = 3;
@@ -28,7 +28,7 @@ pub(crate) fn headline(result: &PlanResult) -> String {
 /// At most nine lines: what ended the search, what keeps a plan away, and what may help.
 pub(crate) fn explain(result: &PlanResult, diagnosis: &Diagnosis) -> String {
     let first = headline(result);
-    let mut lines: Vec<_> = diagnosis.causes.iter().flat_map(words::of_cause).collect();
+    let mut lines: Vec<_> = diagnosis.causes.iter().flat_map(text::of_cause).collect();
     lines.extend(nearer(result));
     let last = advice(result, diagnosis);
     let room = LINES - 1 - last.len() - usize::from(result.partial.is_some());
@@ -43,7 +43,7 @@ pub(crate) fn explain(result: &PlanResult, diagnosis: &Diagnosis) -> String {
 /// All causes, however many, and what the search itself met: what is printed for `--stats`.
 pub(crate) fn details(result: &PlanResult, diagnosis: &Diagnosis) -> String {
     let mut lines = vec!["what keeps a plan away, and what the search met:".to_owned()];
-    lines.extend(diagnosis.causes.iter().flat_map(words::of_cause));
+    lines.extend(diagnosis.causes.iter().flat_map(text::of_cause));
     lines.extend(result.doubts.iter().map(|doubt| format!("before the search: {doubt}")));
     lines.extend(what_was_met(result));
     lines.join("\n  ")
@@ -113,7 +113,7 @@ pub(crate) fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> 
     let progress = diagnosis.nearest_to_goal_m.map_or_else(String::new, |metres| {
         format!(" (nearest so far: {metres:.2} m to move, in {})", counted(result.nodes as u64, "state"))
     });
-    let remedies: Vec<_> = diagnosis.remedies.iter().map(words::of_relaxation).collect();
+    let remedies: Vec<_> = diagnosis.remedies.iter().map(text::of_relaxation).collect();
     let would_help = format!("it would help, as far as a few tries tell: {}", remedies.join("; or "));
     let mut lines: Vec<_> = (!remedies.is_empty()).then_some(would_help).into_iter().collect();
     lines.push(match diagnosis.outcome {

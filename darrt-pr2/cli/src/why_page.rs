@@ -66,5 +66,5 @@ fn reason(cause: &Cause) -> ReasonData {
         Cause::GoalOccupied { at, .. } => Some(*at),
         _ => None,
     };
-    ReasonData { text: diagnosis::words::of_cause(cause).join("\n"), bodies: cause.bodies(), at }
+    ReasonData { text: diagnosis::text::of_cause(cause).join("\n"), bodies: cause.bodies(), at }
 }

@@ -143,7 +143,7 @@ fn bad_usage_is_answered_before_any_run() {
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
     let (printed, _) = run(folder.path(), &["bench", "--list-variants"], 0);
-    assert!(printed.contains("no-reroute") && printed.contains("Algorithm 1 as printed"), "{printed}");
+    assert!(printed.contains("no-local-repair") && printed.contains("Algorithm 1 as printed"), "{printed}");
 }
 
 #[test]

@@ -4,10 +4,10 @@ use darrt_core::testing::strategies::{config, configs, seeds};
 use darrt_pr2::arm::{ArmConfiguration, LimitKind, Side};
 use darrt_pr2::model::{Pr2Model, WholeBody};
 use darrt_pr2::robot::Pr2;
-use darrt_primitives::arm_space::ArmSpace;
-use darrt_primitives::kinematics::{Chain, KinematicTree};
+use darrt_primitives::kinematics::{KinematicChain, KinematicTree};
 use darrt_primitives::laws::{ManipulatorClaims, ReachClaims, check_chain, check_manipulator, check_reaches};
 use darrt_primitives::manipulator::Manipulator;
+use darrt_primitives::mobile_arm_space::MobileArmSpace;
 use nalgebra::{Isometry3, Point3, Vector3};
 use proptest::prelude::*;
 
@@ -18,8 +18,8 @@ fn robot(side: Side, limits: LimitKind) -> Pr2 {
     Pr2::new(Pr2Model::embedded().unwrap(), side, limits, rest).unwrap()
 }
 
-fn space(robot: &Pr2) -> ArmSpace<ArmConfiguration> {
-    ArmSpace::new([-3.0; 2], [3.0; 2], robot.limits(), robot.joint_weights_m()).unwrap()
+fn space(robot: &Pr2) -> MobileArmSpace<ArmConfiguration> {
+    MobileArmSpace::new([-3.0; 2], [3.0; 2], robot.limits(), robot.joint_weights_m()).unwrap()
 }
 
 fn check(side: Side, limits: LimitKind) {
@@ -66,7 +66,7 @@ fn the_jacobians_of_both_arms_equal_finite_differences() {
     let model = Pr2Model::embedded().unwrap();
     let tree: &KinematicTree = model.tree();
     for prefix in ["r", "l"] {
-        let chain = Chain::new(tree, "base_link", &format!("{prefix}_gripper_tool_frame")).unwrap();
+        let chain = KinematicChain::new(tree, "base_link", &format!("{prefix}_gripper_tool_frame")).unwrap();
         let values = proptest::collection::vec(-1.0..1.0_f64, tree.variables().len());
         proptest!(config(24, REGRESSIONS), |(q in values, yaw in -3.0..3.0, x in -0.2..0.2)| {
             let root = Isometry3::new(Vector3::new(1.0, x, 0.0), Vector3::z() * yaw);

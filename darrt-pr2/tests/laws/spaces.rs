@@ -3,7 +3,7 @@
 use darrt_core::domain::Domain;
 use darrt_core::laws::{SpaceClaims, check_component_space, check_covering, check_domain, check_partial};
 use darrt_core::testing::strategies::{config, configs, parameters, seeds, targets};
-use darrt_primitives::arm_space::ArmSpace;
+use darrt_primitives::mobile_arm_space::MobileArmSpace;
 use darrt_primitives::testing::strategies::any_mode;
 use proptest::prelude::*;
 
@@ -14,7 +14,7 @@ const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_spaces.txt");
 #[test]
 fn base_and_arm_keep_the_laws_of_a_space() {
     let problem = problem("plate1");
-    let space: &ArmSpace<_> = problem.domain().robot();
+    let space: &MobileArmSpace<_> = problem.domain().robot();
     let q = configs(space);
     proptest!(config(64, REGRESSIONS), |(a in q.clone(), b in q.clone(), c in q, t in parameters(), u in parameters(), seed in seeds())| {
         check_component_space(space, &SpaceClaims::default(), [&a, &b, &c], [t, u], seed)?;

@@ -1,7 +1,7 @@
 //! The arm as a map from its joints to its hand: what small errors of base and joints do to it, and which small change of the
 //! joints puts it elsewhere.
 
-use darrt_primitives::kinematics::jacobian::Chain;
+use darrt_primitives::kinematics::jacobian::KinematicChain;
 use darrt_primitives::manipulator::world_from_base;
 use darrt_task::robot::RobotFacts;
 use nalgebra::{DMatrix, Isometry3, Matrix6, Point3, Vector6};
@@ -19,7 +19,7 @@ const DAMPING: f64 = 0.01;
 /// What is computed from one place of the robot to the next.
 #[derive(Debug)]
 pub(crate) struct Arm {
-    chain: Chain,
+    chain: KinematicChain,
     /// By joint of the arm: its column in the Jacobian of the chain.
     columns: Vec<usize>,
 }
@@ -28,7 +28,7 @@ impl Arm {
     pub(crate) fn new(robot: &Robot, facts: &RobotFacts) -> Result<Self, ExecuteError> {
         let missing = |what, name: &str| ExecuteError::NoSuchPart { what, name: name.to_owned() };
         let root = robot.tree.link_names().first().map_or("", |name| name.as_ref());
-        let chain = Chain::new(&robot.tree, root, &facts.tool_link);
+        let chain = KinematicChain::new(&robot.tree, root, &facts.tool_link);
         let chain = chain.map_err(|_| missing("link", &facts.tool_link))?;
         let column = |variable: &usize| chain.variables().iter().position(|own| own == variable);
         let names = robot.arm.iter().zip(&facts.arm_joints);
@@ -58,7 +58,7 @@ impl Arm {
     /// yaw (rad).
     ///
     /// # Source
-    /// The base as a rigid body in the plane; the joints by the geometric Jacobian (see [`Chain::jacobian`]).
+    /// The base as a rigid body in the plane; the joints by the geometric Jacobian (see [`KinematicChain::jacobian`]).
     pub(crate) fn error_of_hand(
         &self,
         robot: &Robot,

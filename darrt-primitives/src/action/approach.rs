@@ -37,7 +37,7 @@ pub fn to_push_m<M: Manipulator>(
     let tool = tool(m, from);
     let of_lean = |lean: &f64| {
         let (setback_m, height_m) = pushable.tool_place(*lean)?;
-        Some(Contacts { center: pushable.center(), setback_m, height_m }.distance_m(&tool, &ends))
+        Some(PushCircle { center: pushable.center(), setback_m, height_m }.distance_m(&tool, &ends))
     };
     let leans = m.settings().push.leans_rad.iter();
     leans.filter_map(of_lean).min_by(f64::total_cmp).unwrap_or(NO_WAY_M)
@@ -88,13 +88,13 @@ fn between<M: Manipulator>(m: &Tabletop<M>, pushable: &Pushable<'_>, a: Point2<f
 }
 
 /// The circle on which the tool stands to push an object.
-struct Contacts {
+struct PushCircle {
     center: Point2<f64>,
     setback_m: f64,
     height_m: f64,
 }
 
-impl Contacts {
+impl PushCircle {
     /// From `tool` to the nearest contact behind the object for one of `ends`.
     fn distance_m(&self, tool: &Point3<f64>, ends: &Ends) -> f64 {
         let aside = tool.xy() - self.center;

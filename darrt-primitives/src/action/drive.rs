@@ -7,9 +7,9 @@ use darrt_core::space::ComponentSpace;
 use darrt_core::space::so2::turn;
 
 use super::stance::Probe;
+use crate::collision_scene::Load;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::Contacts;
-use crate::surroundings::Load;
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// So far a straight drive goes between two looks at what is in the way, metres and radians, but for
@@ -50,7 +50,7 @@ impl<'a, M: Manipulator> Drive<'a, M> {
             return false;
         }
         // OPTIMIZATION: how the arm stands to the base does not change on the way.
-        let around = self.m.surroundings();
+        let around = self.m.collision_scene();
         around.load(self.m.manipulator(), self.probe.state(), &mut self.load);
         around.load_blocked(&self.load, self.probe.state(), [&self.to], care).is_none()
     }
@@ -58,7 +58,7 @@ impl<'a, M: Manipulator> Drive<'a, M> {
     /// Is nothing in the way on the straight drive either, of what [`Drive::fits`] was asked about, as far as a few looks
     /// tell? So it is, too, if the base alone cannot go straight: then no arm can.
     pub(super) fn is_straight(&mut self, care: usize) -> bool {
-        let around = self.m.surroundings();
+        let around = self.m.collision_scene();
         let Some(blocked) = around.load_blocked(&self.load, self.probe.state(), &self.looks, care) else { return true };
         if !self.is_base_known {
             let (robot, arm) = (self.m.manipulator(), self.probe.state().robot.arm);

@@ -83,7 +83,7 @@ pub(super) fn order<M: Manipulator>(
         held.is_none_or(|held| stays_level(m, &held, &from.robot.arm, arm) && stays_level(m, &held, arm, &target.arm))
     };
     let mut fallback = None;
-    for care in [m.surroundings().most_care(), 0] {
+    for care in [m.collision_scene().most_care(), 0] {
         let mut cheapest = None;
         for is_wide in [false, true] {
             for ((_, order, arm), wide) in choices.iter().zip(&mut wide) {

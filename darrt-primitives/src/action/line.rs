@@ -76,7 +76,7 @@ pub fn room_for_hand<M: Manipulator>(
 
 /// All the care there is, and none.
 pub(super) fn cares<M: Manipulator>(m: &Tabletop<M>) -> impl Iterator<Item = usize> {
-    let most = m.surroundings().most_care();
+    let most = m.collision_scene().most_care();
     [most, 0].into_iter().take(if most > 0 { 2 } else { 1 })
 }
 

@@ -21,7 +21,7 @@ use crate::primitive;
 use crate::tabletop::{Movable, Tabletop, TabletopState};
 
 /// The arm's way of one pick.
-struct Way<J> {
+struct PickPath<J> {
     base: [f64; 3],
     /// From the pregrasp pose to the grasp.
     in_: Vec<J>,
@@ -54,7 +54,7 @@ pub fn pick<M: Manipulator>(
     let draws = m.settings().grasp_tries * GRASPS_PER_TRY;
     for draw in 0..draws {
         // At first the hand is to have all the room that is wanted, then what it needs.
-        let care = if draw < draws / 2 { m.surroundings().most_care() } else { 0 };
+        let care = if draw < draws / 2 { m.collision_scene().most_care() } else { 0 };
         let Some(family) = movable.grasps.get(rng.random_range(0..movable.grasps.len())) else { continue };
         if family.needs_overhang() && !overhangs {
             continue;
@@ -166,7 +166,7 @@ fn way_of<M: Manipulator>(
     movable: &Movable,
     probe: &mut Probe<'_, M>,
     care: &mut Care,
-) -> Result<Way<M::Joints>, Refused<M>> {
+) -> Result<PickPath<M::Joints>, Refused<M>> {
     let Picking { object, grasp, at_grasp, .. } = *picking;
     let open = straddling(object, grasp);
     probe.check(q, &open, care)?;
@@ -179,7 +179,7 @@ fn way_of<M: Manipulator>(
     }
     check_lifted(m, picking, &at_end(q.base, &up.arms)?, probe, care)?;
     let in_ = out.arms.iter().rev().copied().chain([q.arm]).collect();
-    Ok(Way { base: q.base, in_, up: up.arms })
+    Ok(PickPath { base: q.base, in_, up: up.arms })
 }
 
 /// Is nothing in the way of the object and the hand at the end of the lift?
@@ -200,7 +200,7 @@ fn assemble<M: Manipulator>(
     m: &Tabletop<M>,
     mut chain: Chain<M>,
     picking: &Picking<'_>,
-    way: &Way<M::Joints>,
+    way: &PickPath<M::Joints>,
     rng: &mut dyn Rng,
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
     let Picking { object, pose, grasp, .. } = *picking;

@@ -24,7 +24,7 @@ use crate::tabletop::{Tabletop, TabletopState};
 pub const ON_SURFACE_M: f64 = 0.05;
 
 /// The arm's way of one place.
-struct Way<J> {
+struct PlacePath<J> {
     base: [f64; 3],
     /// From the preplace pose to where the object stands.
     down: Vec<J>,
@@ -63,7 +63,7 @@ pub fn place<M: Manipulator>(
     let mut clear = 0;
     for draw in 0..YAW_DRAWS {
         // At first hand and object are to have all the room that is wanted, then what they need.
-        let care = if draw < YAW_DRAWS / 2 { m.surroundings().most_care() } else { 0 };
+        let care = if draw < YAW_DRAWS / 2 { m.collision_scene().most_care() } else { 0 };
         let standing = standing_pose(m, &held, surface, target, rng).ok_or(Infeasible::OffSupport)?;
         let at_place = standing * held.tool_from_object.inverse();
         before.place(held.object, &standing);
@@ -141,11 +141,11 @@ fn way_of<M: Manipulator>(
     approach_m: LengthRange,
     before: &mut Probe<'_, M>,
     care: &mut Care,
-) -> Result<Way<M::Joints>, Refused<M>> {
+) -> Result<PlacePath<M::Joints>, Refused<M>> {
     let none = Contacts::default();
     let out = follow_in_room(m, q, at_place, &-direction, approach_m, |q| before.check(q, &none, care))?;
     let down = out.arms.iter().rev().copied().chain([q.arm]).collect();
-    Ok(Way { base: q.base, down })
+    Ok(PlacePath { base: q.base, down })
 }
 
 /// What may touch while the object is set down and let go.
@@ -158,7 +158,7 @@ fn assemble<M: Manipulator>(
     from: &TabletopState<M>,
     held: &Held,
     surface: SurfaceId,
-    way: &Way<M::Joints>,
+    way: &PlacePath<M::Joints>,
     rng: &mut dyn Rng,
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
     let mut chain = Chain::at(from);

@@ -50,7 +50,7 @@ pub fn push<M: Manipulator>(
     let pushable = Pushable::new(m, from, object)?;
     let settle_m = pushable.steady(m)?.settle_m.max(LEAST_PUSH_M);
     let end = end_of_push(m, &pushable, target, settle_m, rng)?;
-    let care = if rng.random_bool(CLOSE_SHARE) { 0 } else { m.surroundings().most_care() };
+    let care = if rng.random_bool(CLOSE_SHARE) { 0 } else { m.collision_scene().most_care() };
     let beside = from.mode.opened_to(pushable.gap_m).and_then(|mode| mode.engaged_with(object));
     let probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
     let mut attempt = Attempt { m, from, pushable: &pushable, probe, twin: rng.random_bool(0.5) };

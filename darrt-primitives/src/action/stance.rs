@@ -11,9 +11,9 @@ use nalgebra::Isometry3;
 use rand::{Rng, RngExt};
 use smallvec::SmallVec;
 
+use crate::collision_scene::Hand;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Mode};
-use crate::surroundings::Hand;
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// How many arm configurations are drawn for one base.
@@ -74,7 +74,7 @@ impl<M: Manipulator> Refused<M> {
 impl<M: Manipulator> Blocked<M> {
     /// What is in the way.
     fn why(&self, m: &Tabletop<M>) -> Infeasible {
-        let found = m.surroundings().check(m.manipulator(), &self.state, &self.contacts);
+        let found = m.collision_scene().check(m.manipulator(), &self.state, &self.contacts);
         found.err().map_or(Infeasible::Unreachable, Infeasible::Blocked)
     }
 }
@@ -107,7 +107,7 @@ pub fn stance<M: Manipulator, T>(
         bases.resize(stays, here);
         left -= stays;
     }
-    let most = m.surroundings().most_care();
+    let most = m.collision_scene().most_care();
     let (mut best, mut least) = (None, 0);
     let mut tries_left = usize::MAX;
     let mut blocked = None;
@@ -123,7 +123,7 @@ pub fn stance<M: Manipulator, T>(
         let parked = Configuration { base, arm: from.robot.arm };
         if !m.robot().base().contains(&base)
             || !robot.may_reach(&base, world_from_tool)
-            || !m.surroundings().is_base_clear(robot, &parked)
+            || !m.collision_scene().is_base_clear(robot, &parked)
         {
             continue;
         }
@@ -187,23 +187,23 @@ impl<'a, M: Manipulator> Probe<'a, M> {
     /// # Errors
     /// What is in its way.
     pub fn check_hand(&self, world_from_tool: &Isometry3<f64>, contacts: &Contacts) -> Result<(), Blame> {
-        self.m.surroundings().check_hand(self.hand(), &self.state, world_from_tool, contacts)
+        self.m.collision_scene().check_hand(self.hand(), &self.state, world_from_tool, contacts)
     }
 
     /// [`Probe::check_hand`] with care and without reasons, which takes less time where it is asked often.
     pub fn is_hand_clear(&self, world_from_tool: &Isometry3<f64>, contacts: &Contacts, care: usize) -> bool {
-        self.m.surroundings().is_hand_clear(self.hand(), &self.state, world_from_tool, contacts, care)
+        self.m.collision_scene().is_hand_clear(self.hand(), &self.state, world_from_tool, contacts, care)
     }
 
     fn hand(&self) -> &Hand {
-        self.hand.get_or_init(|| self.m.surroundings().hand(self.m.manipulator(), &self.state))
+        self.hand.get_or_init(|| self.m.collision_scene().hand(self.m.manipulator(), &self.state))
     }
 
     /// Is nothing in the way with the robot at `q`, what it holds in its hand, with this
     /// [care](darrt_core::validity::Validity::most_care)?
     pub fn is_clear(&mut self, q: &Configuration<M::Joints>, contacts: &Contacts, care: usize) -> bool {
         self.put(q);
-        self.m.surroundings().is_state_clear(self.m.manipulator(), &self.state, contacts, care)
+        self.m.collision_scene().is_state_clear(self.m.manipulator(), &self.state, contacts, care)
     }
 
     fn put(&mut self, q: &Configuration<M::Joints>) {
@@ -226,7 +226,7 @@ impl<'a, M: Manipulator> Probe<'a, M> {
         care: &mut Care,
     ) -> Result<(), Refused<M>> {
         self.put(q);
-        let (around, robot) = (self.m.surroundings(), self.m.manipulator());
+        let (around, robot) = (self.m.collision_scene(), self.m.manipulator());
         let is_clear = |level| match level {
             0 => around.is_rest_clear(robot, &self.state, contacts),
             level => around.is_state_clear(robot, &self.state, contacts, level),

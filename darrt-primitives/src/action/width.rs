@@ -28,7 +28,7 @@ impl<'a, M: Manipulator> Widths<'a, M> {
         let (held, finger_gap_m) = (from.mode.held().copied(), from.mode.gap_m());
         let mut widths = Self { m, held, finger_gap_m, passages_m: Vec::new(), poses };
         let [a, b] = [&from.robot.base, &target.base].map(|[x, y, _]| Vector2::new(*x, *y));
-        let gaps = &m.surroundings().floor_plan().gaps;
+        let gaps = &m.collision_scene().floor_plan().gaps;
         let on_the_way =
             gaps.iter().filter(|gap| (gap.middle - a).norm() + (gap.middle - b).norm() <= ON_THE_WAY * (b - a).norm());
         widths.passages_m.extend(on_the_way.map(|gap| gap.width_m));
@@ -66,7 +66,7 @@ impl<'a, M: Manipulator> Widths<'a, M> {
         let [low, high] = extents.fold(none, |[low, high], extent| {
             [[0, 1].map(|i| low[i].min(extent[0][i])), [0, 1].map(|i| high[i].max(extent[1][i]))]
         });
-        let [_, least_m] = m.surroundings().drive_margins_m(0);
+        let [_, least_m] = m.collision_scene().drive_margins_m(0);
         (high[0] - low[0]).min(high[1] - low[1]) + 2.0 * least_m
     }
 }

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use super::footprint::Footprint;
 use super::lattice::{AROUND, Lattice};
 
-/// Ways that are longer than that from the start by this factor are not told apart.
+/// Ways longer than that from the start by this factor count as equally long.
 const BEYOND: f64 = 1.3;
 
 /// Metres to the goal by place, as the lattice goes.

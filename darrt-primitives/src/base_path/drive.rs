@@ -4,11 +4,11 @@
 use darrt_core::domain::Domain;
 use darrt_core::space::ComponentSpace;
 
+use crate::collision_scene::{Strict, Worker};
 use crate::heading_drive;
-use crate::leg::Leg;
 use crate::manipulator::Manipulator;
 use crate::mode::Contacts;
-use crate::surroundings::{Strict, Worker};
+use crate::segment::Segment;
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// Checks drives of one robot with its arm at rest.
@@ -40,7 +40,7 @@ impl<'a, M: Manipulator> Drives<'a, M> {
 
     fn is_straight_clear(&mut self, care: usize, a: &[f64; 3], b: &[f64; 3]) -> bool {
         let Self { m, worker, here, next } = self;
-        let (m, around) = (*m, &**m.surroundings());
+        let (m, around) = (*m, &**m.collision_scene());
         if a == b {
             return true;
         }
@@ -48,9 +48,9 @@ impl<'a, M: Manipulator> Drives<'a, M> {
         put(m, next, b);
         around.pose_all(m.manipulator(), here, worker);
         around.set_rules(here, &Contacts::default(), Strict::with(care), worker);
-        let leg = Leg::new(m, here, next, (0.0, 1.0), worker);
-        let (cap, least) = (around.strictness().cap_m / leg.fastest, around.unseen_m() / leg.fastest);
-        leg.watch(around, worker);
+        let segment = Segment::new(m, here, next, (0.0, 1.0), worker);
+        let (cap, least) = (around.strictness().cap_m / segment.fastest, around.unseen_m() / segment.fastest);
+        segment.watch(around, worker);
         let mut t = 0.0;
         loop {
             let Ok(until) = around.free_until(worker, t, cap) else { return false };
@@ -62,7 +62,7 @@ impl<'a, M: Manipulator> Drives<'a, M> {
             }
             t = if until + least >= 1.0 { 1.0 } else { until + least };
             put(m, here, &m.robot().base().interpolate(a, b, t));
-            around.pose(m.manipulator(), here, &leg.moved, worker);
+            around.pose(m.manipulator(), here, &segment.moved, worker);
         }
     }
 }

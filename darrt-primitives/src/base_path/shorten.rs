@@ -23,13 +23,13 @@ const STRAIGHT: f64 = 1e-9;
 
 /// A way with what its drives cost.
 #[derive(Debug, Clone)]
-pub(super) struct Way {
+pub(super) struct PricedPath {
     stops: Vec<Stop>,
     /// Of the drive to each stop from the one before, metres; 0 for the first.
     costs_m: Vec<f64>,
 }
 
-impl Way {
+impl PricedPath {
     /// The way by these poses; `None` if one of its drives is not clear, or there is none.
     fn by(sight: &mut Sight<'_>, poses: &[[f64; 3]]) -> Option<Self> {
         let mut way = Self { stops: vec![sight.stop(poses.first()?)?], costs_m: vec![0.0] };
@@ -167,9 +167,9 @@ fn window<T: Copy, const N: usize>(all: &[T], from: usize) -> Option<[T; N]> {
 }
 
 /// A shorter way of few straight drives. `None` if `poses` is not a clear way itself.
-pub(super) fn shorten(sight: &mut Sight<'_>, poses: &[[f64; 3]]) -> Option<Way> {
+pub(super) fn shorten(sight: &mut Sight<'_>, poses: &[[f64; 3]]) -> Option<PricedPath> {
     let corners = corners(poses);
-    let mut way = Way::best_by(sight, &subdivided(&corners)).or_else(|| Way::by(sight, poses))?;
+    let mut way = PricedPath::best_by(sight, &subdivided(&corners)).or_else(|| PricedPath::by(sight, poses))?;
     way.pull_taut(sight);
     Some(way)
 }

@@ -7,7 +7,7 @@ use super::footprint::Footprint;
 use super::nudge::{Nudge, Room};
 use crate::heading_drive;
 
-/// Distances beyond this are not told apart, metres: from a pose that is so clear nobody looks at those around it.
+/// Distances beyond this count as this, metres: from a pose that is so clear nobody looks at those around it.
 pub(super) const FAR_M: f64 = 0.3;
 
 /// A passage that is too narrow by no more than this to both sides may only seem so, metres.

@@ -14,7 +14,7 @@ use arrayvec::ArrayVec;
 use nalgebra::Isometry3;
 use rand::Rng;
 
-use super::jacobian::Chain;
+use super::jacobian::KinematicChain;
 use super::limit::{JointLimit, wrap_to_pi};
 use super::tree::{KinematicTree, KinematicsError, expect_length};
 use constants::{Column, Constants, Target};
@@ -83,7 +83,7 @@ impl ChainInverse {
     /// Takes some milliseconds: the table of configurations is made here.
     ///
     /// # Errors
-    /// As [`Chain::new`]; [`KinematicsError::NoJoint`] when nothing between them moves, [`KinematicsError::TooManyJoints`]
+    /// As [`KinematicChain::new`]; [`KinematicsError::NoJoint`] when nothing between them moves, [`KinematicsError::TooManyJoints`]
     /// for more than [`MAX_JOINTS`] joints.
     pub fn new(
         tree: &KinematicTree,
@@ -92,7 +92,7 @@ impl ChainInverse {
         tip_from_tool: &Isometry3<f64>,
         options: InverseOptions,
     ) -> Result<Self, KinematicsError> {
-        let chain = Chain::new(tree, base, tip)?;
+        let chain = KinematicChain::new(tree, base, tip)?;
         let count = chain.variables().len();
         if count == 0 {
             return Err(KinematicsError::NoJoint { base: base.to_owned(), tip: tip.to_owned() });

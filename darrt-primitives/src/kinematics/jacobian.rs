@@ -6,7 +6,7 @@ use super::tree::{Drive, KinematicTree, KinematicsError, LinkMotion, expect_leng
 
 /// The joints between a link and one of its descendants.
 #[derive(Debug, Clone)]
-pub struct Chain {
+pub struct KinematicChain {
     base: usize,
     tip: usize,
     /// Moved links on the way, base side first, each with the column of its variable.
@@ -14,7 +14,7 @@ pub struct Chain {
     variables: Vec<usize>,
 }
 
-impl Chain {
+impl KinematicChain {
     /// The chain from `base` (exclusive) to `tip` (inclusive), by link names.
     ///
     /// # Errors
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn equals_finite_differences() {
         let tree = KinematicTree::new(&RobotDescription::from_text(MIXED).unwrap()).unwrap();
-        let chain = Chain::new(&tree, "mount", "probe").unwrap();
+        let chain = KinematicChain::new(&tree, "mount", "probe").unwrap();
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(3);
         let point = Point3::new(0.1, -0.2, 0.05);
         let root = Isometry3::new(Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.3, -0.4, 0.5));
@@ -159,8 +159,8 @@ mod tests {
     #[test]
     fn a_chain_needs_an_ancestor() {
         let tree = KinematicTree::new(&RobotDescription::from_text(MIXED).unwrap()).unwrap();
-        assert!(matches!(Chain::new(&tree, "probe", "mount"), Err(KinematicsError::NotAbove { .. })));
-        assert!(matches!(Chain::new(&tree, "mount", "nothing"), Err(KinematicsError::UnknownLink { .. })));
-        assert!(Chain::new(&tree, "probe", "probe").unwrap().variables().is_empty());
+        assert!(matches!(KinematicChain::new(&tree, "probe", "mount"), Err(KinematicsError::NotAbove { .. })));
+        assert!(matches!(KinematicChain::new(&tree, "mount", "nothing"), Err(KinematicsError::UnknownLink { .. })));
+        assert!(KinematicChain::new(&tree, "probe", "probe").unwrap().variables().is_empty());
     }
 }

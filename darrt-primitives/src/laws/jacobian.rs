@@ -3,7 +3,7 @@
 use darrt_core::laws::{Broken, at_most, ensure, equal};
 use nalgebra::{Isometry3, Point3, Vector6};
 
-use crate::kinematics::{Chain, KinematicTree};
+use crate::kinematics::{KinematicChain, KinematicTree};
 
 /// One column per joint.
 pub const COLUMNS: &str = "jacobian.columns: there is one column of finite numbers for every joint";
@@ -91,7 +91,7 @@ fn against_differences(
 /// The first law that is [`Broken`], with the joint; [`COLUMNS`] if `q` has the wrong length.
 pub fn check_chain(
     tree: &KinematicTree,
-    chain: &Chain,
+    chain: &KinematicChain,
     q: &[f64],
     world_from_root: &Isometry3<f64>,
     tip_point: &Point3<f64>,

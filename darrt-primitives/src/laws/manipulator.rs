@@ -5,8 +5,8 @@ use darrt_core::laws::watch::watched;
 use darrt_core::random::{Purpose, Stream, stream};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
-use crate::arm_space::ArmSpace;
 use crate::manipulator::{Configuration, Manipulator};
+use crate::mobile_arm_space::MobileArmSpace;
 
 mod description;
 mod extremes;
@@ -212,7 +212,7 @@ pub fn check_manipulator<M: Manipulator>(
 
 struct Trial<'a, M: Manipulator> {
     robot: &'a M,
-    space: ArmSpace<M::Joints>,
+    space: MobileArmSpace<M::Joints>,
     a: &'a Configuration<M::Joints>,
     b: &'a Configuration<M::Joints>,
     gaps_m: [f64; 2],
@@ -237,8 +237,8 @@ impl<M: Manipulator> Trial<'_, M> {
 }
 
 /// The space of a robot's configurations, its base anywhere within a kilometre.
-fn space_of<M: Manipulator>(robot: &M) -> Result<ArmSpace<M::Joints>, Broken> {
-    ArmSpace::new([-1e3; 2], [1e3; 2], robot.limits(), robot.joint_weights_m())
+fn space_of<M: Manipulator>(robot: &M) -> Result<MobileArmSpace<M::Joints>, Broken> {
+    MobileArmSpace::new([-1e3; 2], [1e3; 2], robot.limits(), robot.joint_weights_m())
         .map_err(|error| Broken::new(COUNTS, error.to_string(), "limits and weights that make a space"))
 }
 

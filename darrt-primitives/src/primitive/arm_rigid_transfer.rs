@@ -6,10 +6,10 @@ use rand::Rng;
 
 use super::joint_group::{asks_for_transfer, move_group};
 use crate::action::transfer::transfer;
-use crate::arm_space::ARM;
 use crate::manipulator::Manipulator;
+use crate::mobile_arm_space::ARM;
 use crate::tabletop::{Tabletop, TabletopState};
-use crate::wish::held_target_in_air;
+use crate::target_query::held_target_in_air;
 
 /// Arm-Rigid-Transfer: the arm moves an attached object towards a goal pose, in straight lines in joint space (paper section 5.1).
 #[derive(Debug, Clone, Copy, Default)]

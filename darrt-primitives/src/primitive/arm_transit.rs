@@ -5,8 +5,8 @@ use darrt_core::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use rand::Rng;
 
 use super::joint_group::{asks_for_transit, move_group};
-use crate::arm_space::ARM;
 use crate::manipulator::Manipulator;
+use crate::mobile_arm_space::ARM;
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// Arm-Transit: the arm moves towards a joint goal in a straight line in joint space (paper section 5.1).

@@ -6,10 +6,10 @@ use rand::Rng;
 
 use super::joint_group::{asks_for_transfer, move_group};
 use crate::action::transfer::transfer_by_base;
-use crate::arm_space::BASE;
 use crate::manipulator::Manipulator;
+use crate::mobile_arm_space::BASE;
 use crate::tabletop::{Tabletop, TabletopState};
-use crate::wish::held_target_in_air;
+use crate::target_query::held_target_in_air;
 
 /// Base-Rigid-Transfer: the base moves an attached object towards a goal pose (paper section 5.1).
 #[derive(Debug, Clone, Copy, Default)]

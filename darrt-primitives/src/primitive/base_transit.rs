@@ -5,8 +5,8 @@ use darrt_core::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use rand::Rng;
 
 use super::joint_group::{asks_for_transit, move_group};
-use crate::arm_space::BASE;
 use crate::manipulator::Manipulator;
+use crate::mobile_arm_space::BASE;
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// Base-Transit: the base moves towards a goal pose (paper section 5.1).

@@ -9,10 +9,10 @@ use darrt_core::space::GroupSet;
 
 use crate::action::Chain;
 use crate::action::travel::{arm_to, base_to};
-use crate::arm_space::{ARM, BASE};
 use crate::manipulator::Manipulator;
+use crate::mobile_arm_space::{ARM, BASE};
 use crate::tabletop::{Tabletop, TabletopState};
-use crate::wish::{asks_for_group, held_target_in_air, may_carry_along};
+use crate::target_query::{asks_for_group, held_target_in_air, may_carry_along};
 
 /// Does the target ask the robot with its empty hand to move `group`, and no object to be elsewhere?
 pub(super) fn asks_for_transit<M: Manipulator>(

@@ -8,7 +8,7 @@ use crate::action::approach::to_grasp_m;
 use crate::action::pick::pick;
 use crate::manipulator::Manipulator;
 use crate::tabletop::{Tabletop, TabletopState};
-use crate::wish::{asks_to_pick, random_unmet_object, unmet_objects};
+use crate::target_query::{asks_to_pick, random_unmet_object, unmet_objects};
 
 /// Pick: in a valid grasp pose the object is attached to the gripper and lifted in a straight line (paper section 5.1).
 #[derive(Debug, Clone, Copy, Default)]

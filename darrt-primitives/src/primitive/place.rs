@@ -7,7 +7,7 @@ use rand::Rng;
 use crate::action::place::place;
 use crate::manipulator::Manipulator;
 use crate::tabletop::{Tabletop, TabletopState};
-use crate::wish::{asks_for_empty_hand, held_target_on_surface, random_standing_pose};
+use crate::target_query::{asks_for_empty_hand, held_target_on_surface, random_standing_pose};
 
 /// Place: the object in the gripper is set down on a support surface in a straight line and detached (paper section 5.1).
 #[derive(Debug, Clone, Copy, Default)]

@@ -8,7 +8,7 @@ use crate::action::approach::to_push_m;
 use crate::action::push::push;
 use crate::manipulator::Manipulator;
 use crate::tabletop::{Tabletop, TabletopState};
-use crate::wish::{asks_to_push, random_unmet_object, unmet_objects};
+use crate::target_query::{asks_to_push, random_unmet_object, unmet_objects};
 
 /// Push: the gripper touches the rim of a round object with two fingers and pushes it along the ray through its centre (paper section 5.1, figure 1).
 #[derive(Debug, Clone, Copy, Default)]

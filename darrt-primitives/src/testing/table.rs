@@ -12,13 +12,13 @@ use darrt_geom::support::SupportSurface;
 use nalgebra::{Point2, Vector2, Vector3};
 
 use super::gantry::{Gantry, motion};
-use crate::arm_space::ArmSpace;
 use crate::error::PrimitiveError;
 use crate::grasp::footprint::Footprint;
 use crate::grasp::overhead::OverheadGrasps;
 use crate::grasp::{GraspFamily, Grip};
 use crate::length_range::LengthRange;
 use crate::manipulator::{Configuration, Manipulator};
+use crate::mobile_arm_space::MobileArmSpace;
 use crate::mode::{Mode, SurfaceId};
 use crate::object_space::{ObjectSpace, ObjectSpaceParts};
 use crate::push::edge_stop::{EdgeRule, RimReach};
@@ -99,7 +99,7 @@ pub fn furnished_table(
     let cuboid = Shape::cuboid(Vector3::new(x, y, z) / 2.0)?;
     let footprint = Footprint::Box { size_x: x, size_y: y };
     let mut objects = vec![tin("red tin")?, tin("blue tin")?, movable("box", cuboid, footprint, &surfaces)?];
-    let space = ArmSpace::new([-2.0; 2], [2.0; 2], robot.limits(), robot.joint_weights_m())?;
+    let space = MobileArmSpace::new([-2.0; 2], [2.0; 2], robot.limits(), robot.joint_weights_m())?;
     let supports = surfaces.iter().map(|surface| Support { surface: surface.clone(), bodies: Vec::new() });
     let mut settings = settings()?;
     change(&mut objects, &mut settings);

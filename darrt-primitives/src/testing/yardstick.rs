@@ -148,7 +148,7 @@ impl<M: Manipulator> Grid<'_, M> {
                 *slot = pose;
             }
         }
-        self.m.surroundings().is_state_clear(robot, &self.state, &Contacts::default(), 0)
+        self.m.collision_scene().is_state_clear(robot, &self.state, &Contacts::default(), 0)
     }
 
     fn is_cell_clear(&mut self, number: usize, cell: Cell) -> bool {

@@ -20,9 +20,9 @@ pub(crate) mod check;
 pub mod limits;
 mod pace;
 pub(crate) mod profile;
+mod rounded_path;
 pub mod timed;
 mod track;
-mod way;
 
 use darrt_primitives::contract::Contract;
 

@@ -123,8 +123,8 @@ impl Diagnosis {
                 Cause::GoalOccupied { object: object.clone(), by: by.clone(), occupant, at: *at }
             }
             PlanningError::Doubtful { error, .. } => return Self::of_error(problem, error),
-            PlanningError::GoalWithoutMeans { object, why } => {
-                Cause::NoMeans { object: object.clone(), lack: why.clone() }
+            PlanningError::InfeasibleGoal { object, why } => {
+                Cause::InfeasibleGoal { object: object.clone(), lack: why.clone() }
             }
             PlanningError::MissingPrimitive { primitive, needs } => {
                 Cause::MissingPrimitive { primitive: primitive.clone(), needs: needs.clone() }
@@ -248,8 +248,8 @@ impl<'a, M: Manipulator> Inquest<'a, M> {
             let q = target.robot_overlay(m, &start.robot);
             let aside = self.outlook.alone(ObjectId::new(usize::MAX), &self.outlook.immovable());
             let state = TabletopState::<M> { robot: q, ..aside };
-            let found = m.surroundings().check_base(robot, &q);
-            match found.and_then(|()| m.surroundings().check(robot, &state, &Contacts::default())) {
+            let found = m.collision_scene().check_base(robot, &q);
+            match found.and_then(|()| m.collision_scene().check(robot, &state, &Contacts::default())) {
                 Ok(()) => return None,
                 Err(blame) => *blockers.entry(culprit(m, ObjectId::new(usize::MAX), &blame)).or_default() += 1,
             }

@@ -21,7 +21,7 @@ use darrt_primitives::tabletop::{Movable, Tabletop, TabletopState};
 use nalgebra::{Isometry3, Translation3};
 use rand::{Rng, RngExt as _};
 
-use crate::goal_means::Means;
+use crate::goal_feasibility::Feasibility;
 use crate::grasp_families::why_none_holds;
 use crate::planning_error::PlanningError;
 use crate::problem_file::{Object, ProblemFile, ShapeSpec};
@@ -119,7 +119,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
     /// Checks that no object which must move lies flat, with grasps only by a rim that must overhang, and without a push.
     ///
     /// # Errors
-    /// [`PlanningError::GoalWithoutMeans`] with the object and what would help.
+    /// [`PlanningError::InfeasibleGoal`] with the object and what would help.
     pub(crate) fn check_rims(&self) -> Result<(), PlanningError> {
         for (id, object) in self.objects().filter(|(id, _)| self.must_move(*id)) {
             let Err(no_push) = self.means(object).push else { continue };
@@ -129,7 +129,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
                      pushed to one: {no_push}",
                     object.on
                 );
-                return Err(PlanningError::GoalWithoutMeans { object: object.name.clone(), why });
+                return Err(PlanningError::InfeasibleGoal { object: object.name.clone(), why });
             }
         }
         Ok(())
@@ -161,8 +161,8 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         self.problem.objects.iter().enumerate().map(|(index, object)| (ObjectId::new(index), object))
     }
 
-    pub(crate) fn means(&self, object: &'a Object) -> Means<'a> {
-        Means::new(self.problem, object, self.allowed, self.m.manipulator())
+    pub(crate) fn means(&self, object: &'a Object) -> Feasibility<'a> {
+        Feasibility::new(self.problem, object, self.allowed, self.m.manipulator())
     }
 
     /// Does only this primitive of ours do that? Of a user's own nothing is known.
@@ -188,7 +188,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
     }
 
     /// Can the object leave where it stands?
-    fn of_leaving(&self, id: ObjectId, means: &Means<'_>, state: &TabletopState<M>) -> Option<Doubt> {
+    fn of_leaving(&self, id: ObjectId, means: &Feasibility<'_>, state: &TabletopState<M>) -> Option<Doubt> {
         let is_known =
             self.is_ours(PICK, |contract| contract.hand == HandUse::Takes) && self.is_ours(PUSH, Contract::slides);
         if !is_known {
@@ -212,7 +212,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
     }
 
     /// Has the object a goal on what it stands on, to which a push may lead?
-    pub(crate) fn may_be_pushed_there(&self, means: &Means<'_>) -> bool {
+    pub(crate) fn may_be_pushed_there(&self, means: &Feasibility<'_>) -> bool {
         let object = means.object;
         let across = self.problem.surfaces_across(object);
         let goals = self.problem.goal.objects.iter().filter(|goal| goal.object == object.name);
@@ -222,7 +222,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
     }
 
     /// Can the object be set down at its goal?
-    fn of_arriving(&self, id: ObjectId, means: &Means<'_>, state: &TabletopState<M>) -> Option<Doubt> {
+    fn of_arriving(&self, id: ObjectId, means: &Feasibility<'_>, state: &TabletopState<M>) -> Option<Doubt> {
         let is_known = self.is_ours(PLACE, |contract| contract.hand == HandUse::LetsGo);
         let groups = self.goal.groups().iter();
         let needs_hand = groups.flatten().filter(|goal| goal.object == id).all(|goal| goal.grip == Grip::Released);

@@ -24,11 +24,11 @@ pub mod trial;
 use std::collections::BTreeMap;
 
 use arrayvec::ArrayVec;
-use darrt_primitives::arm_space::difference;
 use darrt_primitives::heading_drive;
 use darrt_primitives::joints::{Joints, MAX_JOINTS};
 use darrt_primitives::kinematics::JointLimit;
 use darrt_primitives::manipulator::{Configuration, Hand, LinkGroup, Manipulator, RobotLink, world_from_base};
+use darrt_primitives::mobile_arm_space::difference;
 use nalgebra::Isometry3;
 use rand::Rng;
 

@@ -5,7 +5,7 @@
 //! | what must a robot say of itself? | [`robot`]; one that comes as a file: [`robot_file`], [`file_robot`] |
 //! | which primitives, samplers, distances and problems are there? | [`registry`], and for command lines [`program`] |
 //! | what is a problem? | [`problem_file`], [`grasp_families`], [`goal_edges`] |
-//! | is it hopeless? | [`goal_means`], [`goal_check`], `doubts` |
+//! | is it hopeless? | [`goal_feasibility`], [`goal_check`], `doubts` |
 //! | why has it no plan? | [`diagnosis`] |
 //! | how is it planned? | [`world`] (with the private `supports`), [`planning`] |
 //! | how does an old plan help? | [`replan`](mod@replan) |
@@ -25,7 +25,7 @@ pub mod file_kind;
 pub mod file_robot;
 pub mod goal_check;
 pub mod goal_edges;
-pub mod goal_means;
+pub mod goal_feasibility;
 pub mod grasp_families;
 mod near_pairs;
 pub mod picture;

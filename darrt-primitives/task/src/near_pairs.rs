@@ -3,10 +3,10 @@
 
 use darrt_core::state::ObjectId;
 use darrt_primitives::action::place::ON_SURFACE_M;
+use darrt_primitives::collision_scene::NearPair;
 use darrt_primitives::goal::{ObjectGoal, TabletopGoal, Whereabouts};
 use darrt_primitives::mode::{Mode, SurfaceId};
 use darrt_primitives::object_space::upright;
-use darrt_primitives::surroundings::NearPair;
 
 use darrt_primitives::manipulator::Manipulator;
 use darrt_primitives::tabletop::{Tabletop, TabletopState};

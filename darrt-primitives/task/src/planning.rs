@@ -23,9 +23,9 @@ use darrt_core::solve::{Cost, Member, Outcome, SolveOptions, Until, solve_record
 use darrt_core::space::{ComponentSpace as _, Place};
 use darrt_core::state::ObjectId;
 use darrt_core::verify::{Refusal, Solution, Verified, Verifier};
-use darrt_primitives::detour::Detour;
+use darrt_primitives::collision_scene::NearPair;
 use darrt_primitives::goal::TabletopGoal;
-use darrt_primitives::surroundings::NearPair;
+use darrt_primitives::local_repair::TransitRepair;
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
 use darrt_primitives::validity::SceneValidity;
 use nalgebra::Isometry3;
@@ -273,7 +273,7 @@ fn prepare_watched<M: TaskRobot>(
     registry.check_companions(file)?;
     let (robot, arm) = M::build(&file.robot)?;
     let allowed: Vec<_> = registry.allowed(file).collect();
-    crate::goal_means::check_means(file, allowed.iter().copied(), &robot)?;
+    crate::goal_feasibility::check_feasibility(file, allowed.iter().copied(), &robot)?;
     let robot = if request.bases_from_reachability { robot.with_bases_from_reachability() } else { robot };
     let Built { world, start, goal, scene, near } = world::build_with(registry, file, robot, arm)?;
     let mut doubts = of_meshes(file, &scene, world.movables());
@@ -352,7 +352,7 @@ pub(crate) fn plan_without_clock<M: TaskRobot>(
         let targets = hinted(prepared.problem.domain(), &request.hints);
         strategy.sampler = Box::new(Guided::new(strategy.sampler, targets, HINTS)?);
     }
-    strategy.reroute = strategy.reroute.map(|part| Box::new(Timed { part, watch: Arc::clone(&watch) }) as _);
+    strategy.local_repair = strategy.local_repair.map(|part| Box::new(Timed { part, watch: Arc::clone(&watch) }) as _);
     let budget = &request.problem.budget;
     let needs_restarts = request.improve.is_some() || request.algorithms.len() > 1;
     let restart_iterations =
@@ -499,7 +499,7 @@ pub fn strategy<M: TaskRobot>(
         sampler,
         distance,
         extend: ExtendOptions { spacing_m: NODE_SPACING, defer: true, ..ExtendOptions::default() },
-        reroute: Some(Box::new(Detour::default())),
+        local_repair: Some(Box::new(TransitRepair::default())),
         try_penalty_m: TRY_PENALTY,
         shorten: ShortenOptions { extensions: SHORTENING },
         improve: Some(Improvement { cost, options: ImproveOptions::default() }),

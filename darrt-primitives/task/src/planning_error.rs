@@ -85,7 +85,7 @@ pub enum PlanningError {
     },
     /// The primitives and grasps of the problem do not suffice for any of the goals of an object.
     #[error("the goal of `{object}` cannot be reached: {why}")]
-    GoalWithoutMeans {
+    InfeasibleGoal {
         /// The object.
         object: String,
         /// What each of its goals lacks.
@@ -116,7 +116,7 @@ impl PlanningError {
     /// Is it proven that the problem, as it is written, has no plan? Else something of it cannot be used, or is not known.
     pub fn is_impossible(&self) -> bool {
         match self {
-            Self::GoalBlocked { .. } | Self::GoalEnclosed { .. } | Self::GoalWithoutMeans { .. } => true,
+            Self::GoalBlocked { .. } | Self::GoalEnclosed { .. } | Self::InfeasibleGoal { .. } => true,
             Self::Doubtful { error, .. } => error.is_impossible(),
             _ => false,
         }

@@ -9,11 +9,11 @@ use std::time::Duration;
 
 use darrt_core::budget::{Budget, Clock};
 use darrt_core::goal::Goal;
+use darrt_core::local_repair::{LocalRepair, NoWay};
 use darrt_core::motion::Instance;
 use darrt_core::observe::{Event, Observer};
 use darrt_core::partial::PartialState;
 use darrt_core::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
-use darrt_core::reroute::{NoWay, Reroute};
 use darrt_core::state::State;
 use darrt_core::validity::{Blame, FreePrefix, Validity};
 use rand::Rng;
@@ -30,7 +30,7 @@ pub struct PrimitiveSeconds {
     /// Judging its motions.
     pub collision_s: f64,
     /// Looking for ways around for its blocked motions.
-    pub reroute_s: f64,
+    pub local_repair_s: f64,
 }
 
 /// Where the time of one call of [`plan`](crate::planning::plan) went.
@@ -201,12 +201,12 @@ impl<M: Manipulator, V: Validity<Tabletop<M>>> Validity<Tabletop<M>> for Timed<V
     }
 }
 
-impl<M: Manipulator> Reroute<Tabletop<M>> for Timed<Box<dyn Reroute<Tabletop<M>>>> {
+impl<M: Manipulator> LocalRepair<Tabletop<M>> for Timed<Box<dyn LocalRepair<Tabletop<M>>>> {
     fn is_free_to_turn(&self, m: &Tabletop<M>, instance: &Instance<Tabletop<M>>) -> bool {
         self.part.is_free_to_turn(m, instance)
     }
 
-    fn reroute(
+    fn repair(
         &self,
         m: &Tabletop<M>,
         validity: &dyn Validity<Tabletop<M>>,
@@ -216,9 +216,9 @@ impl<M: Manipulator> Reroute<Tabletop<M>> for Timed<Box<dyn Reroute<Tabletop<M>>
         rng: &mut dyn Rng,
     ) -> Result<Instance<Tabletop<M>>, NoWay> {
         let add = |sums: &mut Sums, spent: Duration| {
-            sums.primitives.entry(instance.primitive.name()).or_default().reroute_s += spent.as_secs_f64();
+            sums.primitives.entry(instance.primitive.name()).or_default().local_repair_s += spent.as_secs_f64();
         };
-        self.watch.timed(|| self.part.reroute(m, validity, care, instance, from, rng), add)
+        self.watch.timed(|| self.part.repair(m, validity, care, instance, from, rng), add)
     }
 }
 
@@ -271,7 +271,8 @@ mod tests {
         let result = planned(&PlanRequest::new(builtin("bowl").unwrap(), 0));
         let (times, whole) = (&result.times, result.elapsed.as_secs_f64());
         assert!(result.plan.is_some() && times.prepare_s > 0.0 && times.verification_s > 0.0);
-        let in_primitives: f64 = times.primitives.values().map(|p| p.propagate_s + p.collision_s + p.reroute_s).sum();
+        let in_primitives: f64 =
+            times.primitives.values().map(|p| p.propagate_s + p.collision_s + p.local_repair_s).sum();
         assert!(in_primitives > 0.0 && in_primitives + times.verification_s <= whole, "{times:?} {whole}");
         assert!(times.first_plan_s.unwrap() + times.shortening_s <= whole, "{times:?} {whole}");
         let names: Vec<_> = result.accounts.rows().map(|(name, _)| name).collect();

@@ -6,15 +6,15 @@ use std::sync::Arc;
 use darrt_core::primitive::PrimitiveId;
 use darrt_core::state::{ObjectId, State};
 use darrt_geom::scene::Scene;
-use darrt_primitives::arm_space::ArmSpace;
+use darrt_primitives::collision_scene::NearPair;
 use darrt_primitives::contact::MAX_LEAN;
 use darrt_primitives::goal::{Grip, ObjectGoal, RobotGoal, TabletopGoal, Whereabouts};
 use darrt_primitives::manipulator::{Configuration, Hand, JointVector as _};
+use darrt_primitives::mobile_arm_space::MobileArmSpace;
 use darrt_primitives::mode::Mode;
 use darrt_primitives::object_space::{ObjectSpace, ObjectSpaceParts};
 use darrt_primitives::primitive::{BASE_RIGID_TRANSFER, BASE_TRANSIT};
 use darrt_primitives::push::edge_stop::{EdgeRule, RimReach};
-use darrt_primitives::surroundings::NearPair;
 use darrt_primitives::tabletop::{
     ActionSettings, Movable, ObjectFriction, PlaceSettings, PushSettings, Tabletop, TabletopState,
 };
@@ -75,7 +75,7 @@ pub fn build_with<M: TaskRobot>(
     let bounds = &problem.bounds;
     let lower = [bounds.base_x[0], bounds.base_y[0]];
     let upper = [bounds.base_x[1], bounds.base_y[1]];
-    let space: ArmSpace<M::Joints> = ArmSpace::new(lower, upper, robot.limits(), robot.joint_weights_m())?;
+    let space: MobileArmSpace<M::Joints> = MobileArmSpace::new(lower, upper, robot.limits(), robot.joint_weights_m())?;
 
     let supports = Supports::new(problem, &geometry)?;
     let objects = problem

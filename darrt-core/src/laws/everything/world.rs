@@ -37,7 +37,7 @@ pub(super) fn default_strategy<D: Domain>() -> Option<Strategy<D>> {
         sampler: Box::new(GoalBiased::new(RandomSubset, 0.2).ok()?),
         distance: Box::new(GreedyVisit),
         extend: ExtendOptions::default(),
-        reroute: None,
+        local_repair: None,
         try_penalty_m: 0.0,
         shorten: crate::shorten::ShortenOptions::default(),
         improve: None,

@@ -1,8 +1,8 @@
 //! A space at its borders: what is no number, faces and corners, small differences.
 
 use super::{
-    DEAF, DIMENSION, NAN, NAN_FAR, PURE, RESOLVES, SpaceClaims, TOLERANCE_SMALL, interpolation, metric, overlays,
-    shadows,
+    DEAF, DIMENSION, NAN, NAN_FAR, PURE, RESOLVES, SpaceClaims, TOLERANCE_SMALL, index_coordinates, interpolation,
+    metric, overlays,
 };
 use crate::laws::feed::{Spoilt, corner, count, face, is_number, rng_of, spoilt, values, with};
 use crate::laws::watch::{drawing, entering};
@@ -39,8 +39,8 @@ pub(super) fn not_a_number<S: ComponentSpace>(space: &S, [a, b]: [&S::Config; 2]
         let _ = space.interpolate(a, &bad, 0.5);
         entering("overlay");
         let _ = space.overlay(a, &bad, space.groups());
-        entering("shadow");
-        space.shadow(&bad, &mut |_, _| {});
+        entering("index_coordinates");
+        space.index_coordinates(&bad, &mut |_, _| {});
     }
     entering("interpolate");
     for t in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.5, 1.5] {
@@ -71,7 +71,7 @@ pub(super) fn corners<S: ComponentSpace>(
         metric(space, claims, [p, q, r]).map_err(of)?;
         interpolation(space, claims, [p, q], [0.3, 0.8]).map_err(of)?;
         overlays(space, [p, q, r]).map_err(of)?;
-        shadows(space, claims, [p, q]).map_err(of)?;
+        index_coordinates(space, claims, [p, q]).map_err(of)?;
     }
     Ok(())
 }
@@ -212,9 +212,9 @@ pub(super) fn answers<S: ComponentSpace>(
     say("interpolate", &|| format!("{:?}", space.interpolate(a, b, t)));
     say("interpolate half-way", &|| format!("{:?}", space.interpolate(b, a, 0.5)));
     say("overlay", &|| format!("{:?}", space.overlay(a, b, half)));
-    say("shadow", &|| {
+    say("index_coordinates", &|| {
         let mut marks = Vec::new();
-        space.shadow(a, &mut |group, x| marks.push((group, x)));
+        space.index_coordinates(a, &mut |group, x| marks.push((group, x)));
         format!("{marks:?}")
     });
     let sample = drawing("sample", stream(seed, 3, 0, Purpose::Sample), |rng| space.sample(rng))?;

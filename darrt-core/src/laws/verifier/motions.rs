@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rand::RngExt;
 
 use super::forge::{Change, Forge, LEAST_M};
-use super::{Way, rejected};
+use super::{Tampering, rejected};
 use crate::domain::Domain;
 use crate::laws::feed::{components, drift, spoilt_states};
 use crate::laws::motion::component_travel;
@@ -19,27 +19,27 @@ const WINDOW: (f64, f64) = (0.3, 0.7);
 /// What is led into something is already inside of it at these shares of the way.
 const DEEP: [f64; 3] = [0.9, 0.95, 1.0];
 
-pub(super) fn ways<D: Domain>() -> Vec<Way<D>> {
+pub(super) fn ways<D: Domain>() -> Vec<Tampering<D>> {
     vec![
-        Way { name: "jumps away and back", change: jumps },
-        Way { name: "jumps in the last thousandth", change: jumps_late },
-        Way { name: "stands still, and then jumps to the end", change: stands_still },
-        Way { name: "passes through what is in the way", change: |f, rng| penetrates(f, rng, true) },
-        Way { name: "passes through what is in the way, in no time", change: |f, rng| penetrates(f, rng, false) },
-        Way { name: "leads an object through what is in the way", change: object_penetrates },
-        Way { name: "ends elsewhere", change: |f, rng| ends_elsewhere(f, rng, 1.0) },
-        Way { name: "ends nearly there", change: |f, rng| ends_elsewhere(f, rng, 0.05) },
-        Way { name: "moves a bystander", change: |f, rng| bystander(f, rng, false) },
-        Way { name: "moves a bystander there and back", change: |f, rng| bystander(f, rng, true) },
-        Way { name: "the robot becomes NaN on the way", change: |f, rng| not_a_number(f, rng, true, WINDOW) },
-        Way { name: "the robot ends as NaN", change: |f, rng| not_a_number(f, rng, true, (0.9, 1.0)) },
-        Way { name: "an object becomes NaN on the way", change: |f, rng| not_a_number(f, rng, false, WINDOW) },
-        Way { name: "a length that is NaN", change: |f, rng| length(f, rng, f64::NAN) },
-        Way { name: "a length below 0", change: |f, rng| length(f, rng, -1.0) },
-        Way { name: "a length without end", change: |f, rng| length(f, rng, f64::INFINITY) },
-        Way { name: "lets go early", change: early },
-        Way { name: "loses an object", change: loses },
-        Way { name: "leaves the space of the robot", change: leaves },
+        Tampering { name: "jumps away and back", change: jumps },
+        Tampering { name: "jumps in the last thousandth", change: jumps_late },
+        Tampering { name: "stands still, and then jumps to the end", change: stands_still },
+        Tampering { name: "passes through what is in the way", change: |f, rng| penetrates(f, rng, true) },
+        Tampering { name: "passes through what is in the way, in no time", change: |f, rng| penetrates(f, rng, false) },
+        Tampering { name: "leads an object through what is in the way", change: object_penetrates },
+        Tampering { name: "ends elsewhere", change: |f, rng| ends_elsewhere(f, rng, 1.0) },
+        Tampering { name: "ends nearly there", change: |f, rng| ends_elsewhere(f, rng, 0.05) },
+        Tampering { name: "moves a bystander", change: |f, rng| bystander(f, rng, false) },
+        Tampering { name: "moves a bystander there and back", change: |f, rng| bystander(f, rng, true) },
+        Tampering { name: "the robot becomes NaN on the way", change: |f, rng| not_a_number(f, rng, true, WINDOW) },
+        Tampering { name: "the robot ends as NaN", change: |f, rng| not_a_number(f, rng, true, (0.9, 1.0)) },
+        Tampering { name: "an object becomes NaN on the way", change: |f, rng| not_a_number(f, rng, false, WINDOW) },
+        Tampering { name: "a length that is NaN", change: |f, rng| length(f, rng, f64::NAN) },
+        Tampering { name: "a length below 0", change: |f, rng| length(f, rng, -1.0) },
+        Tampering { name: "a length without end", change: |f, rng| length(f, rng, f64::INFINITY) },
+        Tampering { name: "lets go early", change: early },
+        Tampering { name: "loses an object", change: loses },
+        Tampering { name: "leaves the space of the robot", change: leaves },
     ]
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rand::RngExt;
 
-use super::Way;
+use super::Tampering;
 use super::forge::{Backwards, Forge, instance_of};
 use crate::domain::Domain;
 use crate::laws::motion::component_travel;
@@ -12,24 +12,24 @@ use crate::plan::Plan;
 use crate::random::Stream;
 use crate::state::{ComponentId, ComponentSet};
 
-pub(super) fn ways<D: Domain>() -> Vec<Way<D>> {
+pub(super) fn ways<D: Domain>() -> Vec<Tampering<D>> {
     vec![
-        Way { name: "starts elsewhere", change: starts_elsewhere },
-        Way { name: "starts where its first step ends", change: starts_later },
-        Way { name: "no steps at all", change: no_steps },
-        Way { name: "the first step is missing", change: |forge, _| without(forge, 0) },
-        Way { name: "a step is missing", change: |forge, rng| without(forge, forge.moving(rng)?) },
-        Way { name: "the last step is missing", change: last_missing },
-        Way { name: "two steps are swapped", change: swapped },
-        Way { name: "a step comes twice", change: twice },
-        Way { name: "a step runs backwards", change: backwards },
-        Way { name: "a step is cut, and the next begins at its end", change: cut_in_the_middle },
-        Way { name: "the last step is cut", change: cut_at_the_end },
-        Way { name: "a step that runs until NaN", change: |forge, rng| until(forge, rng, f64::NAN) },
-        Way { name: "a step that runs until 0", change: |forge, rng| until(forge, rng, 0.0) },
-        Way { name: "a step that runs until -1", change: |forge, rng| until(forge, rng, -1.0) },
-        Way { name: "a step that runs until 1.5", change: |forge, rng| until(forge, rng, 1.5) },
-        Way { name: "a step that says it moves nothing", change: moves_nothing },
+        Tampering { name: "starts elsewhere", change: starts_elsewhere },
+        Tampering { name: "starts where its first step ends", change: starts_later },
+        Tampering { name: "no steps at all", change: no_steps },
+        Tampering { name: "the first step is missing", change: |forge, _| without(forge, 0) },
+        Tampering { name: "a step is missing", change: |forge, rng| without(forge, forge.moving(rng)?) },
+        Tampering { name: "the last step is missing", change: last_missing },
+        Tampering { name: "two steps are swapped", change: swapped },
+        Tampering { name: "a step comes twice", change: twice },
+        Tampering { name: "a step runs backwards", change: backwards },
+        Tampering { name: "a step is cut, and the next begins at its end", change: cut_in_the_middle },
+        Tampering { name: "the last step is cut", change: cut_at_the_end },
+        Tampering { name: "a step that runs until NaN", change: |forge, rng| until(forge, rng, f64::NAN) },
+        Tampering { name: "a step that runs until 0", change: |forge, rng| until(forge, rng, 0.0) },
+        Tampering { name: "a step that runs until -1", change: |forge, rng| until(forge, rng, -1.0) },
+        Tampering { name: "a step that runs until 1.5", change: |forge, rng| until(forge, rng, 1.5) },
+        Tampering { name: "a step that says it moves nothing", change: moves_nothing },
     ]
 }
 

@@ -39,8 +39,8 @@ pub struct Sketch {
     pub sample: fn(&mut dyn Rng) -> Config,
     /// [`ComponentSpace::overlay`].
     pub overlay: fn(&Config, &Config, GroupSet) -> Config,
-    /// [`ComponentSpace::shadow`]: the coordinates of position and heading, the groups in that order.
-    pub shadow: fn(&Config) -> [f64; 2],
+    /// [`ComponentSpace::index_coordinates`]: the coordinates of position and heading, the groups in that order.
+    pub index_coordinates: fn(&Config) -> [f64; 2],
     /// [`ComponentSpace::tolerance`].
     pub tolerance: f64,
     /// [`ComponentSpace::dimension`].
@@ -53,7 +53,17 @@ impl Default for Sketch {
     fn default() -> Self {
         let sample_at = |rng: &mut dyn Rng| Some([rng.random_range(0.0..=0.2), sample(rng)[1]]);
         let tolerance = 1e-9;
-        Self { contains: inside, distance, interpolate, sample, overlay, shadow, tolerance, dimension: 2, sample_at }
+        Self {
+            contains: inside,
+            distance,
+            interpolate,
+            sample,
+            overlay,
+            index_coordinates,
+            tolerance,
+            dimension: 2,
+            sample_at,
+        }
     }
 }
 
@@ -90,7 +100,7 @@ pub fn overlay(from: &Config, target: &Config, groups: GroupSet) -> Config {
 }
 
 /// The position, and a point that a turned heading moves away by no more than the turn.
-pub fn shadow([x, heading]: &Config) -> [f64; 2] {
+pub fn index_coordinates([x, heading]: &Config) -> [f64; 2] {
     [*x, heading.sin()]
 }
 
@@ -129,8 +139,8 @@ impl ComponentSpace for Sketch {
         GroupSet::first(2)
     }
 
-    fn shadow(&self, q: &Config, mark: &mut dyn FnMut(u32, f64)) {
-        (0..).zip((self.shadow)(q)).for_each(|(group, x)| mark(group, x));
+    fn index_coordinates(&self, q: &Config, mark: &mut dyn FnMut(u32, f64)) {
+        (0..).zip((self.index_coordinates)(q)).for_each(|(group, x)| mark(group, x));
     }
 
     fn overlay(&self, from: &Config, target: &Config, groups: GroupSet) -> Config {
@@ -186,8 +196,8 @@ pub struct Bench {
     pub object_point: fn(&Config) -> f64,
     /// [`Domain::reach_at_least`].
     pub reach_at_least: fn(f64) -> f64,
-    /// [`Domain::hop`], by the configurations of the two objects.
-    pub hop: fn(&Config, &Config) -> f64,
+    /// [`Domain::travel_between`], by the configurations of the two objects.
+    pub travel_between: fn(&Config, &Config) -> f64,
     /// [`Domain::may_go_on`].
     pub may_go_on: fn(&Tag, &Tag) -> bool,
     /// [`Domain::carried`].
@@ -208,7 +218,7 @@ impl Default for Bench {
             reach_from: |point, at| (point[0] - at[0]).abs(),
             object_point: |at| at[0],
             reach_at_least: |gap_m| gap_m,
-            hop: along,
+            travel_between: along,
             may_go_on: |mode, next| mode == next,
             carried: |_| ComponentSet::EMPTY,
             without_robot: |_| None,
@@ -275,8 +285,8 @@ impl Domain for Bench {
         (self.reach_at_least)(gap_m)
     }
 
-    fn hop(&self, from: (ObjectId, &Config), to: (ObjectId, &Config)) -> f64 {
-        (self.hop)(from.1, to.1)
+    fn travel_between(&self, from: (ObjectId, &Config), to: (ObjectId, &Config)) -> f64 {
+        (self.travel_between)(from.1, to.1)
     }
 }
 

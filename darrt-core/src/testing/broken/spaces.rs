@@ -1,4 +1,4 @@
-//! Broken spaces, and domains with broken reach, hop or names.
+//! Broken spaces, and domains with broken reach, travel or names.
 
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -29,7 +29,7 @@ fn honest() -> Result<(), Broken> {
 }
 
 pub(super) fn cases() -> Vec<Case> {
-    [metrics(), ways(), samples(), shadows(), overlays(), targets(), domains()].concat()
+    [metrics(), ways(), samples(), index_coordinates(), overlays(), targets(), domains()].concat()
 }
 
 fn case(name: &'static str, wrong: &'static str, law: &'static str, broken: fn() -> Result<(), Broken>) -> Case {
@@ -154,23 +154,26 @@ fn samples() -> Vec<Case> {
     ]
 }
 
-fn shadows() -> Vec<Case> {
-    use laws::space::{SHADOW, SHADOW_ALIKE};
+fn index_coordinates() -> Vec<Case> {
+    use laws::space::{COORDINATES, COORDINATES_ALIKE};
     vec![
-        case("unwrapped shadow", "the heading as it is: almost a turn apart where the way is short", SHADOW, || {
-            check(Sketch { shadow: |q| *q, ..Sketch::default() })
-        }),
+        case(
+            "unwrapped index coordinates",
+            "the heading as it is: almost a turn apart where the way is short",
+            COORDINATES,
+            || check(Sketch { index_coordinates: |q| *q, ..Sketch::default() }),
+        ),
         Case {
             name: "one coordinate more",
             wrong: "marks the heading only where there is one",
-            law: SHADOW_ALIKE,
+            law: COORDINATES_ALIKE,
             broken: || growing(|q| if q[1] > 0.0 { 2 } else { 1 }),
             honest: || growing(|_| 2),
         },
     ]
 }
 
-/// The honest space with a shadow of as many coordinates as this says.
+/// The honest space with as many index coordinates as this says.
 struct Marked(fn(&Config) -> usize);
 
 impl ComponentSpace for Marked {
@@ -196,8 +199,8 @@ impl ComponentSpace for Marked {
         bench::sample(rng)
     }
 
-    fn shadow(&self, q: &Config, mark: &mut dyn FnMut(u32, f64)) {
-        (0..).zip(bench::shadow(q)).take((self.0)(q)).for_each(|(_, x): (u32, f64)| mark(0, x));
+    fn index_coordinates(&self, q: &Config, mark: &mut dyn FnMut(u32, f64)) {
+        (0..).zip(bench::index_coordinates(q)).take((self.0)(q)).for_each(|(_, x): (u32, f64)| mark(0, x));
     }
 }
 
@@ -316,7 +319,7 @@ fn subset(robot: Sketch) -> Result<(), Broken> {
 }
 
 fn domains() -> Vec<Case> {
-    use laws::domain::{COUNT, HOP, MAY_GO_ON, NAMES, POINT, REACH, REACH_AT_LEAST, REACH_FROM};
+    use laws::domain::{COUNT, MAY_GO_ON, NAMES, POINT, REACH, REACH_AT_LEAST, REACH_FROM, TRAVEL_BETWEEN};
     let case = |name, wrong, law, broken| Case { name, wrong, law, broken, honest: || domain(&Bench::default()) };
     vec![
         case("inside the object", "reach subtracts the radius of the object, and is negative inside it", REACH, || {
@@ -338,8 +341,8 @@ fn domains() -> Vec<Case> {
         case("there and back again", "bounds the reach by twice the gap", REACH_AT_LEAST, || {
             domain(&Bench { reach_at_least: |gap_m| 2.0 * gap_m, ..Bench::default() })
         }),
-        case("normalised hop", "divides by the distance of two objects at the same place", HOP, || {
-            domain(&Bench { hop: |a, b| (a[0] - b[0]).powi(2) / (a[0] - b[0]).abs(), ..Bench::default() })
+        case("normalised travel", "divides by the distance of two objects at the same place", TRAVEL_BETWEEN, || {
+            domain(&Bench { travel_between: |a, b| (a[0] - b[0]).powi(2) / (a[0] - b[0]).abs(), ..Bench::default() })
         }),
         case("only ever onwards", "asks for a later mode, and so refuses the very one", MAY_GO_ON, || {
             domain(&Bench { may_go_on: |mode, next| mode.number() < next.number(), ..Bench::default() })

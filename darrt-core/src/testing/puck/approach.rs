@@ -84,7 +84,7 @@ mod tests {
                     let mut way = vec![from];
                     way.extend(detour(&CENTRE, 0.5, &from, &to));
                     way.push(to);
-                    assert!(way.windows(2).all(|leg| is_clear(&CENTRE, 0.5, &leg[0], &leg[1])), "{way:?}");
+                    assert!(way.windows(2).all(|segment| is_clear(&CENTRE, 0.5, &segment[0], &segment[1])), "{way:?}");
                 }
             }
         }

@@ -161,7 +161,7 @@ pub fn paper_strategy() -> Result<Strategy<PuckWorld>, Error> {
         sampler: Box::new(GoalBiased::new(RobotOrObjects::new(0.5, 0.0)?, 0.2)?),
         distance: Box::new(GreedyVisit),
         extend: ExtendOptions::default(),
-        reroute: None,
+        local_repair: None,
         try_penalty_m: 0.0,
         shorten: crate::shorten::ShortenOptions::default(),
         improve: None,

@@ -50,13 +50,14 @@ pub fn drive(
     states.extend(via.iter().map(|at| State { robot: *at, mode: on_the_way.clone(), ..from.clone() }));
     let end = State { robot: target, mode: from.mode.touching(approached), ..from.clone() };
     states.push(end.clone());
-    let legs: Vec<f64> = states.windows(2).map(|leg| plane::distance(&leg[0].robot, &leg[1].robot)).collect();
+    let segments: Vec<f64> =
+        states.windows(2).map(|segment| plane::distance(&segment[0].robot, &segment[1].robot)).collect();
     // It may leave what it touches now.
     let touched = m.ids().filter(|id| Some(*id) == approached || m.gap(from, *id) < CLEARANCE_M);
     let instance = Instance {
         primitive: PrimitiveId::new(0, "Transit"),
         contacts: touched.fold(ComponentSet::EMPTY, |set, id| set.with(ComponentId::Object(id))),
-        motion: Box::new(Waypoints::new(states, &legs, on_the_way)?),
+        motion: Box::new(Waypoints::new(states, &segments, on_the_way)?),
         moves: ComponentSet::ROBOT,
         object: approached,
         reversible: true,

@@ -168,7 +168,7 @@ impl Domain for PuckWorld {
         (gap_m - self.touch_distance(object)).max(0.0)
     }
 
-    fn hop(&self, from: (ObjectId, &Point), to: (ObjectId, &Point)) -> f64 {
+    fn travel_between(&self, from: (ObjectId, &Point), to: (ObjectId, &Point)) -> f64 {
         // From somewhere around one puck to somewhere around the other.
         (plane::distance(from.1, to.1) - self.touch_distance(from.0) - self.touch_distance(to.0)).max(0.0)
     }

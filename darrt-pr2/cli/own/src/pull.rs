@@ -6,7 +6,7 @@ use darrt_primitives::action::slide::{SlidingWay, slide};
 use darrt_primitives::contact::HandStance;
 use darrt_primitives::contract::{Contract, HandUse, HandWay, MovingPart, ObjectRule};
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
-use darrt_primitives::wish::{asks_to_push, random_unmet_object, unmet_objects};
+use darrt_primitives::target_query::{asks_to_push, random_unmet_object, unmet_objects};
 use darrt_task::registry::TaskPrimitive;
 use darrt_task::robot::TaskRobot;
 use rand::{Rng, RngExt};

@@ -100,7 +100,7 @@ pub struct PrimitiveRecord {
     /// Seconds spent on judging its motions.
     pub collision_s: f64,
     /// Seconds spent on ways around for its motions.
-    pub reroute_s: f64,
+    pub local_repair_s: f64,
     /// How many extensions it ended in which way; ways that did not occur are left out.
     pub ends: BTreeMap<String, u64>,
 }
@@ -263,7 +263,7 @@ fn primitives(result: &PlanResult) -> Vec<PrimitiveRecord> {
             name: name.to_owned(),
             propagate_s: times.propagate_s,
             collision_s: times.collision_s,
-            reroute_s: times.reroute_s,
+            local_repair_s: times.local_repair_s,
             ends: ends.map(|(bucket, count)| (bucket.heading().to_owned(), *count)).collect(),
         }
     };
@@ -317,7 +317,7 @@ pub(crate) mod tests {
                 name: "Pick".to_owned(),
                 propagate_s: seconds * 0.3,
                 collision_s: seconds * 0.2,
-                reroute_s: 0.0,
+                local_repair_s: 0.0,
                 ends: BTreeMap::from([("accepted".to_owned(), 3), ("no grasp".to_owned(), seed.saturating_add(97))]),
             }],
             machine: Machine {

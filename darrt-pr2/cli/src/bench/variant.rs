@@ -43,8 +43,8 @@ pub const VARIANTS: [Variant; 30] = [
     }),
     variant("euclidean", "distance: the sum of all ways", |r| r.distance = Some(DistanceName::EUCLIDEAN)),
     variant("exact-tour", "distance: the best order of visits", |r| r.distance = Some(DistanceName::EXACT_TOUR)),
-    variant("no-reroute", "blocked motions are cut short, no way around is looked for", |r| {
-        r.changes.push(StrategyChange::NoReroute);
+    variant("no-local-repair", "blocked motions are cut short, no way around is looked for", |r| {
+        r.changes.push(StrategyChange::NoLocalRepair);
     }),
     variant("eager", "every motion is judged as soon as it is propagated", |r| {
         r.changes.push(StrategyChange::Eager);
@@ -104,7 +104,7 @@ pub const VARIANTS: [Variant; 30] = [
         r.problem.sampling.edge_share = 0.0;
         r.as_found = true;
         r.changes = vec![
-            StrategyChange::NoReroute,
+            StrategyChange::NoLocalRepair,
             StrategyChange::NoPenalty,
             StrategyChange::NodeEvery(FINE_STEP),
             StrategyChange::NoShortening,
@@ -160,7 +160,7 @@ mod tests {
             assert_eq!(Variant::named(variant.name).unwrap(), *variant);
         }
         let message = Variant::named("exact-tuor").unwrap_err().to_string();
-        assert!(message.contains("did you mean `exact-tour`?") && message.contains("no-reroute"), "{message}");
+        assert!(message.contains("did you mean `exact-tour`?") && message.contains("no-local-repair"), "{message}");
     }
 
     #[test]
@@ -171,8 +171,8 @@ mod tests {
         assert_eq!((&request.sampler, request.problem.sampling.goal_bias), (&Some(SamplerName::FULL), 0.0));
         Variant::named("paper").unwrap().apply(&mut request);
         let mut strategy = darrt_task::planning::strategy(&darrt_pr2::registry(), &request).unwrap();
-        assert!(strategy.reroute.is_some() && strategy.try_penalty_m > 0.0);
+        assert!(strategy.local_repair.is_some() && strategy.try_penalty_m > 0.0);
         request.changes.iter().for_each(|change| change.apply(&mut strategy));
-        assert!(strategy.reroute.is_none() && strategy.try_penalty_m == 0.0 && strategy.shorten.extensions == 0);
+        assert!(strategy.local_repair.is_none() && strategy.try_penalty_m == 0.0 && strategy.shorten.extensions == 0);
     }
 }

@@ -49,7 +49,7 @@ pub(crate) fn run(program: &dyn Program, options: &CheckOptions, output: &mut Ou
             _ if is_refused => "right, but not accepted".to_owned(),
             None => "accepted".to_owned(),
             partial => {
-                format!("right, but only the beginning of a plan: {}", diagnosis::words::of_parts(partial.as_ref()))
+                format!("right, but only the beginning of a plan: {}", diagnosis::text::of_parts(partial.as_ref()))
             }
         };
         let warnings = proof.warnings.iter().map(|warning| format!("\nwarning:  {warning}"));

@@ -49,12 +49,12 @@ fn words(explanation: &Explanation) -> String {
         lines.push(format!("{problem}: has a plan as it is, found in {}", counted(*count, "iteration")));
     } else {
         lines.push(format!("{problem}: no plan in {}", counted(*iterations, "iteration")));
-        lines.extend(explanation.causes.iter().flat_map(diagnosis::words::of_cause));
+        lines.extend(explanation.causes.iter().flat_map(diagnosis::text::of_cause));
         let found = if solved.is_empty() { "none of them has a plan" } else { "with a plan:" };
         lines.push(format!("{} planned, {found}", counted(*tried, "problem")));
     }
     for found in solved {
-        let changes: Vec<_> = found.changes.iter().map(diagnosis::words::of_relaxation).collect();
+        let changes: Vec<_> = found.changes.iter().map(diagnosis::text::of_relaxation).collect();
         let time = Duration::from_secs_f64(found.seconds.max(0.0)).as_secs_f64();
         let (iterations, steps) = (counted(found.iterations, "iteration"), counted(found.steps, "step"));
         lines.push(format!("{}: solved and verified in {time:.2} s, {iterations}, {steps}", changes.join(" and ")));

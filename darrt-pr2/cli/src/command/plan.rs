@@ -205,7 +205,7 @@ fn failed(
     let mut exit = if result.stop == Stop::Cancelled { Exit::Interrupted } else { Exit::NotSolved };
     if let Some((plan, _)) = &result.partial {
         let path = files.write_partial(program, plan)?;
-        why = format!("{why}\n  {}", diagnosis::words::of_partial(plan, &path));
+        why = format!("{why}\n  {}", diagnosis::text::of_partial(plan, &path));
         exit = Exit::Partial;
     }
     let told = Told { problem: &request.problem, result: Some(result), diagnosis: &diagnosis };

@@ -68,7 +68,7 @@ fn of_plan(program: &dyn Program, options: &WhyNotOptions, output: &mut Output) 
     let mut request = PlanRequest::new(from.problem.clone(), options.seed);
     request.iterations = Some(options.iterations);
     let of = from.steps.len();
-    let remains = diagnosis::words::of_parts(from.partial.as_ref());
+    let remains = diagnosis::text::of_parts(from.partial.as_ref());
     let cancel = Cancel::new();
     plan::listen(&cancel);
     let failed = |error: darrt_task::planning_error::PlanningError| {
@@ -97,7 +97,7 @@ fn of_plan(program: &dyn Program, options: &WhyNotOptions, output: &mut Output) 
         let iterations = counted(replanned.result.iterations, "iteration");
         lines.push(format!("{kept}, none was found that works in {iterations}"));
         let diagnosis = program.diagnose(&request, &replanned.result).map_err(failed)?;
-        lines.extend(diagnosis.causes.iter().flat_map(diagnosis::words::of_cause));
+        lines.extend(diagnosis.causes.iter().flat_map(diagnosis::text::of_cause));
     }
     output.print(&format!("{}: {}", options.source, lines.join("\n  ")))?;
     Ok(Exit::NotSolved)

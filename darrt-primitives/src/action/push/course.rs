@@ -86,7 +86,7 @@ impl Course {
         }
         let least_m = settle_m.min(length_m);
         let whole = Self { slide, heading, least_m, is_whole: true };
-        let (free_m, Some(blame)) = m.surroundings().free_slide(from, pushable.object, &slide, care) else {
+        let (free_m, Some(blame)) = m.collision_scene().free_slide(from, pushable.object, &slide, care) else {
             return Ok(whole);
         };
         let stop_m = free_m - STOP_BEFORE_M;
@@ -113,7 +113,7 @@ impl Course {
             let slide = Slide::along_arc(*pushable.pose, &end.coords, turn);
             let heading = slide.heading()?;
             let stays = stays_on(pushable.surface, &slide, m.settings().safety.edge_margin_m);
-            let is_free = stays && m.surroundings().free_slide(from, pushable.object, &slide, care).1.is_none();
+            let is_free = stays && m.collision_scene().free_slide(from, pushable.object, &slide, care).1.is_none();
             is_free.then(|| Self { slide, heading, least_m: slide.length_m(), is_whole: true })
         })
     }

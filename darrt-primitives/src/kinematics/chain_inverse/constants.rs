@@ -4,7 +4,7 @@ use arrayvec::ArrayVec;
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 use super::MAX_JOINTS;
-use crate::kinematics::jacobian::Chain;
+use crate::kinematics::jacobian::KinematicChain;
 use crate::kinematics::limit::JointLimit;
 use crate::kinematics::tree::{Drive, KinematicTree, LinkMotion};
 
@@ -76,7 +76,7 @@ impl PoseError {
 }
 
 impl Constants {
-    pub(super) fn new(tree: &KinematicTree, chain: &Chain, tip_from_tool: &Isometry3<f64>) -> Self {
+    pub(super) fn new(tree: &KinematicTree, chain: &KinematicChain, tip_from_tool: &Isometry3<f64>) -> Self {
         let mut links = Vec::new();
         let mut link = chain.tip();
         while link != chain.base() {
@@ -191,7 +191,7 @@ impl Constants {
     /// What is missing to `target` with the joints at `values`; fills the Jacobian, one column per joint of the chain.
     ///
     /// # Source
-    /// The geometric Jacobian as in [`Chain::jacobian`].
+    /// The geometric Jacobian as in [`KinematicChain::jacobian`].
     pub(super) fn error(&self, values: &[f64], target: &Target, columns: &mut [Column]) -> PoseError {
         // More joints than columns: some follow others.
         let mut axes: ArrayVec<(Vector3<f64>, Vector3<f64>), { 2 * MAX_JOINTS }> = ArrayVec::new();

@@ -4,8 +4,8 @@ use darrt_core::laws::{Broken, at_most, ensure, equal};
 use nalgebra::Isometry3;
 
 use super::{BASE_FOR, INVERSE_LIMITS, INVERSE_POSE, MAY_REACH, NEAR_SELF, PURE, SEEDED, Trial, same_pose};
-use crate::arm_space::difference;
 use crate::manipulator::{Configuration, Manipulator};
+use crate::mobile_arm_space::difference;
 
 /// How many solutions are drawn for each pose.
 const DRAWS: u64 = 4;

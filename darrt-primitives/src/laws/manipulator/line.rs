@@ -5,8 +5,8 @@ use darrt_core::space::ComponentSpace;
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 use super::{LINE_BOW, LINE_STEP, Trial};
-use crate::arm_space::difference;
 use crate::manipulator::{Configuration, Manipulator};
+use crate::mobile_arm_space::difference;
 
 impl<M: Manipulator> Trial<'_, M> {
     /// From both configurations, along the axes of the world both ways, as far as the arm reaches.

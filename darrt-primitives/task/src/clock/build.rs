@@ -7,8 +7,8 @@ use nalgebra::{Isometry3, Vector3};
 use super::ClockError;
 use super::limits::{Bounds, MotionLimits, carrying_acceleration, coasting_speed, quasi_static_acceleration};
 use super::pace::{self, Channel, Piece};
-use super::track::{BASE, Body, Leg, Track};
-use super::way::Way;
+use super::rounded_path::RoundedPath;
+use super::track::{BASE, Body, StepTrack, Track};
 use crate::plan_file::PlanFile;
 use crate::plan_file::timing::{Phase, StepTiming, Timing};
 use crate::robot::RobotFacts;
@@ -28,7 +28,7 @@ const SMALLEST_ROUNDING: f64 = 1e-4;
 struct Pace<'a> {
     body: &'a Body,
     limits: &'a MotionLimits,
-    leg: &'a Leg,
+    step_track: &'a StepTrack,
     /// By variable.
     joints: &'a [Bounds],
     drive: Bounds,
@@ -53,9 +53,9 @@ pub(super) fn time(
     let body = Body::new(facts)?;
     let track = Track::new(plan, &body)?;
     let joints = joint_bounds(&body, limits);
-    let steps = track.legs.iter().enumerate().map(|(index, leg)| {
-        let tube_m = tube_m(index, &leg.contract);
-        Pace { tube_m, ..Pace::new(&body, limits, leg, &joints) }.step()
+    let steps = track.steps.iter().enumerate().map(|(index, step_track)| {
+        let tube_m = tube_m(index, &step_track.contract);
+        Pace { tube_m, ..Pace::new(&body, limits, step_track, &joints) }.step()
     });
     let steps: Vec<StepTiming> = steps.collect();
     let duration_s = steps.iter().flat_map(|step| &step.phases).map(Phase::duration_s).sum();
@@ -86,22 +86,32 @@ enum Motion {
 }
 
 impl<'a> Pace<'a> {
-    fn new(body: &'a Body, limits: &'a MotionLimits, leg: &'a Leg, joints: &'a [Bounds]) -> Self {
-        let share = if leg.contract.begins_holding() { limits.loaded_base_share } else { 1.0 };
+    fn new(body: &'a Body, limits: &'a MotionLimits, step_track: &'a StepTrack, joints: &'a [Bounds]) -> Self {
+        let share = if step_track.contract.begins_holding() { limits.loaded_base_share } else { 1.0 };
         let mut hand = [f64::INFINITY; 2];
-        if leg.contract.way != HandWay::Free {
+        if step_track.contract.way != HandWay::Free {
             hand[0] = limits.at_object_m_per_s;
         }
-        if let Some(object) = &leg.pushes {
+        if let Some(object) = &step_track.pushes {
             let mu = object.friction.table;
             hand = [hand[0].min(coasting_speed(mu)), quasi_static_acceleration(mu)];
         }
-        if let Some((object, _)) = &leg.holds {
+        if let Some((object, _)) = &step_track.holds {
             hand[1] = hand[1].min(carrying_acceleration(object.max_tilt_deg()));
         }
         let (drive, turn) = (limits.drive.scaled(share), limits.turn.scaled(share));
         let [speed, acceleration] = hand.map(|bound| bound * HAND_SHARE);
-        Self { body, limits, leg, joints, drive, turn, hand_m_per_s: speed, hand_m_per_s2: acceleration, tube_m: 0.0 }
+        Self {
+            body,
+            limits,
+            step_track,
+            joints,
+            drive,
+            turn,
+            hand_m_per_s: speed,
+            hand_m_per_s2: acceleration,
+            tube_m: 0.0,
+        }
     }
 
     fn step(&self) -> StepTiming {
@@ -112,7 +122,7 @@ impl<'a> Pace<'a> {
                 Motion::Fingers => self.phases(&[from, to]),
                 Motion::Robot => self.phases(&self.knots(from, to)),
             };
-            let (wait_s, rest_s) = match (motion, self.leg.contract.hand) {
+            let (wait_s, rest_s) = match (motion, self.step_track.contract.hand) {
                 (Motion::Fingers, HandUse::Takes) => (0.0, self.limits.grasp_s),
                 (Motion::Fingers, HandUse::LetsGo) => (self.limits.release_s, self.limits.release_s),
                 _ => (0.0, 0.0),
@@ -128,7 +138,7 @@ impl<'a> Pace<'a> {
             }
             phases.append(&mut own);
         }
-        if let ([Some(first), Some(last)], true) = (moves, self.leg.contract.slides()) {
+        if let ([Some(first), Some(last)], true) = (moves, self.step_track.contract.slides()) {
             if let Some(phase) = phases.get_mut(first) {
                 phase.wait_s = self.limits.contact_s;
             }
@@ -142,7 +152,7 @@ impl<'a> Pace<'a> {
     /// The step as ranges of waypoints between which either the fingers move or the rest does; none if nothing moves.
     fn runs(&self) -> Vec<(usize, usize, Motion)> {
         let finger = BASE + self.body.finger;
-        let kinds = self.leg.points.windows(2).map(|pair| match pair {
+        let kinds = self.step_track.points.windows(2).map(|pair| match pair {
             [a, b] if a == b => None,
             [a, b] if a.get(finger) != b.get(finger) => Some(Motion::Fingers),
             _ => Some(Motion::Robot),
@@ -164,13 +174,14 @@ impl<'a> Pace<'a> {
 
     /// The waypoints from `from` to `to` between which the robot moves in straight lines.
     fn knots(&self, from: usize, to: usize) -> Vec<usize> {
-        let points = &self.leg.points;
+        let points = &self.step_track.points;
         let mut knots = vec![from];
         let mut anchor = from;
         while anchor < to {
             let mut end = anchor + 1;
             while end < to
-                && (is_same(points, end, anchor) || (!self.leg.contract.slides() && is_line(points, anchor, end + 1)))
+                && (is_same(points, end, anchor)
+                    || (!self.step_track.contract.slides() && is_line(points, anchor, end + 1)))
             {
                 end += 1;
             }
@@ -190,9 +201,9 @@ impl<'a> Pace<'a> {
 
     /// The phases that go by these waypoints: one, or more where the robot must stop at a corner.
     fn phases(&self, knots: &[usize]) -> Vec<Phase> {
-        let points: Vec<_> = knots.iter().filter_map(|knot| self.leg.points.get(*knot).cloned()).collect();
+        let points: Vec<_> = knots.iter().filter_map(|knot| self.step_track.points.get(*knot).cloned()).collect();
         let lengths: Vec<f64> = points.windows(2).map(|pair| self.length(pair)).collect();
-        let way = Way::new(points, lengths, vec![0.0; knots.len().saturating_sub(2)]);
+        let way = RoundedPath::new(points, lengths, vec![0.0; knots.len().saturating_sub(2)]);
         let radii: Vec<f64> = (0..knots.len()).map(|knot| self.radius(&way, knot)).collect();
         let mut phases = Vec::new();
         let mut from = 0;
@@ -204,7 +215,7 @@ impl<'a> Pace<'a> {
             let lengths = way.lengths().get(from..to).unwrap_or_default().to_vec();
             let blends = radii.get(from + 1..to).unwrap_or_default().to_vec();
             let mut phase = Phase { knots, lengths, blends, profile: Vec::new(), wait_s: 0.0, rest_s: 0.0 };
-            phase.profile = pace::profile(&self.pieces(&Way::of(&phase, &self.leg.points)));
+            phase.profile = pace::profile(&self.pieces(&RoundedPath::of(&phase, &self.step_track.points)));
             phases.push(phase);
             from = to;
         }
@@ -213,7 +224,7 @@ impl<'a> Pace<'a> {
 
     /// How far from a knot its corner is rounded: half of the shorter line, less if anything would pass the knot farther than it
     /// may; 0 where the robot stops.
-    fn radius(&self, way: &Way, knot: usize) -> f64 {
+    fn radius(&self, way: &RoundedPath, knot: usize) -> f64 {
         let lines = way.lengths();
         let (Some(before), Some(after)) = (knot.checked_sub(1).and_then(|line| lines.get(line)), lines.get(knot))
         else {
@@ -227,7 +238,7 @@ impl<'a> Pace<'a> {
     }
 
     /// How far any link, the tool or what it holds passes a knot that is rounded so far, metres.
-    fn shift_m(&self, way: &Way, knot: usize, radius: f64) -> f64 {
+    fn shift_m(&self, way: &RoundedPath, knot: usize, radius: f64) -> f64 {
         let corner = way.corner(knot);
         let (Some(mark), rounded) = (way.marks().get(knot), 3.0 / 16.0 * radius) else { return f64::INFINITY };
         let at = way.at(*mark).point;
@@ -249,13 +260,13 @@ impl<'a> Pace<'a> {
         if self.hand_m_per_s == f64::INFINITY {
             return own_s;
         }
-        let way = Way::new(line.to_vec(), vec![1.0], Vec::new());
+        let way = RoundedPath::new(line.to_vec(), vec![1.0], Vec::new());
         let [first, _] = self.hand(&way, 0.0, 1.0);
         own_s.max(first / self.hand_m_per_s)
     }
 
     /// The straight lines and corners of a way, in order.
-    fn pieces(&self, way: &Way) -> Vec<Piece> {
+    fn pieces(&self, way: &RoundedPath) -> Vec<Piece> {
         let mut pieces = Vec::new();
         for (line, (from, to)) in way.marks().iter().zip(way.marks().iter().skip(1)).enumerate() {
             let (from, to) = (from + way.radius(line), to - way.radius(line + 1));
@@ -270,14 +281,14 @@ impl<'a> Pace<'a> {
         pieces
     }
 
-    fn line(&self, way: &Way, line: usize, from: f64, to: f64) -> Piece {
+    fn line(&self, way: &RoundedPath, line: usize, from: f64, to: f64) -> Piece {
         let direction = way.direction(line);
         let mut channels = self.channels(|i| [direction.get(i).map_or(0.0, |d| d.abs()), 0.0], 1.0);
         self.add_hand(way, from, to, &mut channels);
         Piece { length: to - from, channels }
     }
 
-    fn corner(&self, way: &Way, knot: usize, radius: f64) -> Piece {
+    fn corner(&self, way: &RoundedPath, knot: usize, radius: f64) -> Piece {
         let corner = way.corner(knot);
         let sizes = |i: usize| {
             let [a, b] = [&corner.before, &corner.after].map(|d| d.get(i).copied().unwrap_or(0.0));
@@ -307,7 +318,7 @@ impl<'a> Pace<'a> {
         base.into_iter().chain(joints).filter(|c| c.first > 0.0 || c.second > 0.0).collect()
     }
 
-    fn add_hand(&self, way: &Way, from: f64, to: f64, channels: &mut Vec<Channel>) {
+    fn add_hand(&self, way: &RoundedPath, from: f64, to: f64, channels: &mut Vec<Channel>) {
         let bounds = Bounds { velocity: self.hand_m_per_s, acceleration: self.hand_m_per_s2, ..Bounds::NONE };
         if (bounds.velocity == f64::INFINITY && bounds.acceleration == f64::INFINITY) || to - from <= SHORTEST {
             return;
@@ -318,7 +329,7 @@ impl<'a> Pace<'a> {
 
     /// The largest first and second derivative of where the hand is, or what it holds, seen between two places of a way: metres
     /// per length and per length squared.
-    fn hand(&self, way: &Way, from: f64, to: f64) -> [f64; 2] {
+    fn hand(&self, way: &RoundedPath, from: f64, to: f64) -> [f64; 2] {
         let step = (to - from) / f64::from(LOOKS);
         let places: Vec<Vector3<f64>> =
             (0..=LOOKS).map(|i| self.hand_at(&way.at(from + f64::from(i) * step).point)).collect();
@@ -346,7 +357,7 @@ impl<'a> Pace<'a> {
 
     /// What the hand holds, or the hand itself.
     fn held(&self, tool: Isometry3<f64>) -> Isometry3<f64> {
-        self.leg.holds.as_ref().map_or(tool, |(_, tool_from_object)| tool * tool_from_object)
+        self.step_track.holds.as_ref().map_or(tool, |(_, tool_from_object)| tool * tool_from_object)
     }
 
     /// Where all links are in the world, and last the tool or what it holds.

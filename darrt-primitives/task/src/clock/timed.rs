@@ -9,8 +9,8 @@ use darrt_primitives::manipulator::world_from_base;
 use nalgebra::Isometry3;
 
 use super::profile::{self, Progress, progress};
+use super::rounded_path::RoundedPath;
 use super::track::{BASE, Body, Track};
-use super::way::Way;
 use super::{ClockError, check};
 use crate::plan_file::timing::{StepTiming, Timing};
 use crate::plan_file::{JointTable, PlanFile};
@@ -37,7 +37,7 @@ struct Placed {
     moves_s: f64,
     stops_s: f64,
     end_s: f64,
-    way: Way,
+    way: RoundedPath,
     profile: Vec<[f64; 2]>,
     opens: bool,
     knots: Vec<usize>,
@@ -114,10 +114,10 @@ impl TimedPlan {
         let body = Body::new(facts)?;
         let track = Track::new(plan, &body)?;
         let (mut phases, mut step_starts, mut now) = (Vec::new(), Vec::new(), 0.0);
-        for (step, (leg, timing)) in track.legs.iter().zip(&timing.steps).enumerate() {
+        for (step, (step_track, timing)) in track.steps.iter().zip(&timing.steps).enumerate() {
             step_starts.push(now);
             for phase in &timing.phases {
-                let way = Way::of(phase, &leg.points);
+                let way = RoundedPath::of(phase, &step_track.points);
                 let ends = [0.0, way.length()].map(|s| way.at(s).point.get(BASE + body.finger).copied());
                 let moves_s = now + phase.wait_s;
                 let stops_s = moves_s + phase.moving_s();
@@ -237,19 +237,19 @@ impl TimedPlan {
 
     /// Where the plan has the objects at a moment: in the hand, pushed along, or at rest.
     pub fn objects(&self, moment: &Moment) -> BTreeMap<Arc<str>, Isometry3<f64>> {
-        let Some(leg) = self.track.legs.get(moment.step) else { return BTreeMap::new() };
+        let Some(step_track) = self.track.steps.get(moment.step) else { return BTreeMap::new() };
         let below = moment.waypoint.floor().max(0.0);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index, as it was made")]
         let index = below as usize;
-        let Some(from) = leg.objects.get(index) else { return BTreeMap::new() };
-        let to = leg.objects.get(index + 1).unwrap_or(from);
+        let Some(from) = step_track.objects.get(index) else { return BTreeMap::new() };
+        let to = step_track.objects.get(index + 1).unwrap_or(from);
         let share = moment.waypoint - below;
         let poses = from.iter().zip(to.values()).map(|((name, from), to)| {
             let from: Isometry3<f64> = (*from).into();
             (Arc::clone(name), from.lerp_slerp(&(*to).into(), share))
         });
         let mut poses: BTreeMap<_, _> = poses.collect();
-        if let Some((object, tool_from_object)) = &leg.holds
+        if let Some((object, tool_from_object)) = &step_track.holds
             && let Some(pose) = poses.get_mut(object.name.as_str())
         {
             *pose = self.links(moment).get(self.body.tool).copied().unwrap_or_default() * tool_from_object;
@@ -260,7 +260,7 @@ impl TimedPlan {
     /// When the robot passes each waypoint of a step, seconds from the beginning of the step; it stands at the first at 0. `None`
     /// if there is no such step.
     pub fn waypoint_times_s(&self, step: usize) -> Option<Vec<f64>> {
-        let points = &self.track.legs.get(step)?.points;
+        let points = &self.track.steps.get(step)?.points;
         let on_line = |from: usize, to: usize, at: usize| match (points.get(from), points.get(to), points.get(at)) {
             (Some(a), Some(b), Some(point)) => share(point, a, b),
             _ => 0.0,
@@ -289,20 +289,20 @@ impl TimedPlan {
     /// All that happens besides motion, in order of time.
     pub fn events(&self) -> Vec<Event> {
         let mut events = Vec::new();
-        for (step, leg) in self.track.legs.iter().enumerate() {
+        for (step, step_track) in self.track.steps.iter().enumerate() {
             let Some(begin_s) = self.step_start_s(step) else { continue };
-            let before = step.checked_sub(1).and_then(|before| self.track.legs.get(before));
-            let has_driven = before.is_some_and(|leg| leg.contract.drives());
-            let sets_down = leg.contract.hand == HandUse::LetsGo;
-            let touches = sets_down || (leg.contract.fingers_touch && !leg.contract.begins_holding());
-            let touched = !sets_down && before.is_some_and(|leg| leg.contract.fingers_touch);
+            let before = step.checked_sub(1).and_then(|before| self.track.steps.get(before));
+            let has_driven = before.is_some_and(|step_track| step_track.contract.drives());
+            let sets_down = step_track.contract.hand == HandUse::LetsGo;
+            let touches = sets_down || (step_track.contract.fingers_touch && !step_track.contract.begins_holding());
+            let touched = !sets_down && before.is_some_and(|step_track| step_track.contract.fingers_touch);
             if has_driven || (touches && !touched) {
                 events.push(Event { time_s: begin_s, step, kind: EventKind::Sense });
             }
             for phase in self.phases.iter().filter(|phase| phase.step == step && phase.opens) {
                 let finger = |s: f64| phase.way.at(s).point.get(BASE + self.body.finger).copied().unwrap_or(0.0);
                 let (from, to) = (finger(0.0), finger(phase.way.length()));
-                let takes = leg.contract.hand == HandUse::Takes;
+                let takes = step_track.contract.hand == HandUse::Takes;
                 let force_n = takes.then_some(self.grip_force_n);
                 events.push(Event { time_s: phase.moves_s, step, kind: EventKind::Fingers { from, to, force_n } });
             }

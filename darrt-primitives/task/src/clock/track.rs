@@ -92,7 +92,7 @@ impl Body {
 
 /// A step as points.
 #[derive(Debug)]
-pub(crate) struct Leg {
+pub(crate) struct StepTrack {
     pub(crate) contract: Contract,
     /// By waypoint.
     pub(crate) points: Vec<Vec<f64>>,
@@ -108,7 +108,7 @@ pub(crate) struct Leg {
 #[derive(Debug)]
 pub(crate) struct Track {
     pub(crate) start: Vec<f64>,
-    pub(crate) legs: Vec<Leg>,
+    pub(crate) steps: Vec<StepTrack>,
 }
 
 impl Track {
@@ -116,7 +116,7 @@ impl Track {
         let start =
             body.point(&plan.start, None).map_err(|why| ClockError::Waypoint { place: "start".to_owned(), why })?;
         let mut last = start.clone();
-        let mut legs = Vec::with_capacity(plan.steps.len());
+        let mut steps = Vec::with_capacity(plan.steps.len());
         for (index, step) in plan.steps.iter().enumerate() {
             let object = |name: &String| {
                 let missing = || ClockError::Missing { step: index + 1, what: "object", name: name.clone() };
@@ -140,8 +140,8 @@ impl Track {
             let holds = step.holds.as_ref().map(|hold| Ok((object(&hold.object)?, hold.tool_from_object.into())));
             let pushes = step.pushes.as_ref().map(object);
             let objects = step.waypoints.iter().map(|waypoint| waypoint.objects.clone()).collect();
-            legs.push(Leg { contract, points, objects, holds: holds.transpose()?, pushes: pushes.transpose()? });
+            steps.push(StepTrack { contract, points, objects, holds: holds.transpose()?, pushes: pushes.transpose()? });
         }
-        Ok(Self { start, legs })
+        Ok(Self { start, steps })
     }
 }

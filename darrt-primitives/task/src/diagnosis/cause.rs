@@ -193,7 +193,7 @@ pub enum Cause {
         at: [f64; 3],
     },
     /// A primitive or a grasp is missing, or would not hold.
-    NoMeans {
+    InfeasibleGoal {
         /// The object.
         object: String,
         /// What is missing, in words.
@@ -320,7 +320,7 @@ impl Cause {
     pub fn object(&self) -> Option<&str> {
         match self {
             Self::GoalOccupied { object, .. }
-            | Self::NoMeans { object, .. }
+            | Self::InfeasibleGoal { object, .. }
             | Self::NoRoom { object, .. }
             | Self::NoCommonGrasp { object, .. }
             | Self::CutOff { object, .. }

@@ -96,7 +96,7 @@ fn flood<M: Manipulator>(m: &Tabletop<M>, start: &TabletopState<M>, wanted: &[[f
             if !m.robot().base().contains(&q.base) {
                 return Some(BOUNDS.to_owned());
             }
-            let found = m.surroundings().check_base(m.manipulator(), &q);
+            let found = m.collision_scene().check_base(m.manipulator(), &q);
             found.err().map(|blame| culprit(m, ObjectId::new(usize::MAX), &blame))
         };
         let in_the_middle = check([0.0; 3])?;

@@ -295,7 +295,7 @@ impl<'a, M: Manipulator> Look<'a, M> {
             let q = Configuration { base, arm: state.robot.arm };
             robot.may_reach(&base, tool)
                 && self.m.robot().base().contains(&base)
-                && self.m.surroundings().is_base_clear(robot, &q)
+                && self.m.collision_scene().is_base_clear(robot, &q)
                 && (0..ARMS).any(|_| {
                     left.set(left.get().saturating_sub(1));
                     left.get() > 0 && robot.inverse(&base, tool, rng).is_some()
@@ -515,7 +515,7 @@ impl<M: Manipulator> Ends<'_, '_, M> {
         if !self.m().robot().base().contains(&q.base) {
             return Err(End { stage: Stage::Stand, body: Some(BOUNDS.to_owned()) });
         }
-        let found = self.m().surroundings().check_base(self.m().manipulator(), q);
+        let found = self.m().collision_scene().check_base(self.m().manipulator(), q);
         found.map_err(|blame| self.blamed(Stage::Stand, Some(blame)))
     }
 }

@@ -232,11 +232,11 @@ impl<M: Manipulator> Asked<'_, M> {
             let by = Some(beyond(0).max(beyond(1))).filter(|by| by.is_finite() && *by > 0.0);
             return Some(Fault { wrong: Wrong::Bounds, names: vec![BOUNDS.to_owned()], by, is_angle: false, bases: 0 });
         }
-        if let Err(blame) = m.surroundings().check_base(robot, q) {
+        if let Err(blame) = m.collision_scene().check_base(robot, q) {
             return Some(self.met(Wrong::Base, &blame, q, self.look.start));
         }
         let state = TabletopState::<M> { robot: *q, ..self.look.start.clone() };
-        let found = m.surroundings().check(robot, &state, &Contacts::default());
+        let found = m.collision_scene().check(robot, &state, &Contacts::default());
         found.err().map(|blame| self.met(Wrong::Robot, &blame, q, &state))
     }
 

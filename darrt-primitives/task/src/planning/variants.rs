@@ -15,7 +15,7 @@ use darrt_primitives::tabletop::Tabletop;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StrategyChange {
     /// Blocked motions are cut short, no way around is looked for.
-    NoReroute,
+    NoLocalRepair,
     /// Every motion is judged as soon as it is propagated.
     Eager,
     /// Nodes do not count as farther once tried.
@@ -42,8 +42,8 @@ impl StrategyChange {
     /// Makes the change. Numbers out of range change nothing.
     pub fn apply<M: Manipulator>(self, strategy: &mut Strategy<Tabletop<M>>) {
         match self {
-            Self::NoReroute => {
-                strategy.reroute = None;
+            Self::NoLocalRepair => {
+                strategy.local_repair = None;
                 strategy.extend.defer = false;
             }
             Self::Eager => strategy.extend.defer = false,

@@ -68,7 +68,7 @@ pub(super) fn check_grip(
 
 /// How a pushed object moves at one moment.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Way {
+pub(super) struct SlideDirection {
     /// Unit vector: where its centre goes.
     pub(super) heading: Vector2<f64>,
     /// How far it turns for each metre, 1/m, at least 0.
@@ -176,7 +176,7 @@ impl PushCore {
         stage: &Stage,
         object: usize,
         tips: [Option<Clearance>; 2],
-        way: &Way,
+        way: &SlideDirection,
         options: &VerifyOptions,
     ) -> Result<(), Refusal> {
         let (_, pose) = stage.object(object);

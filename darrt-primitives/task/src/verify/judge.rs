@@ -14,7 +14,7 @@ use super::approach::{Approach, Movers};
 use super::drag;
 use super::edge;
 use super::goal;
-use super::hand::{PushCore, Way, check_grip};
+use super::hand::{PushCore, SlideDirection, check_grip};
 use super::hold::{Hold, check_hold};
 use super::margins::{MarginKind, Margins};
 use super::mode::{Act, Mode, Permits};
@@ -362,7 +362,7 @@ impl<'a> Judge<'a> {
                 self.check_turned_along(trial, time, &now)?;
             }
             self.stage.place(&self.world_from_robot, &self.links, &now.objects, gone);
-            let way = slide.map(|slide| Way { heading: slide.heading(s), curvature: slide.curvature() });
+            let way = slide.map(|slide| SlideDirection { heading: slide.heading(s), curvature: slide.curvature() });
             self.check_state(trial, time, &now, way)?;
             // OPTIMIZATION: states at which nothing would be looked at need not be made. The end always is.
             let next = (i + 1 + self.idle_parts(trial, &now, (travel_m, turn_rad), parts)).min(parts.max(i + 1));

@@ -117,7 +117,7 @@ fn many_calls<D: Domain>(world: &World<D>, index: usize, tally: &Tally) -> Resul
     for i in 0..calls {
         let number = stream(world.seed, 24, i, Purpose::Attempt).random();
         let mut rng = rng_of_case(number);
-        // The state is the dear part: several targets for each.
+        // The state is the expensive part: several targets for each.
         let from = world.state(&mut rng, 0);
         for attempt in 0..4 {
             let to = world.target(&from, &mut rng, 0);

@@ -7,7 +7,7 @@ use crate::domain::Domain;
 use crate::laws::everything::report::Row;
 use crate::laws::everything::world::World;
 use crate::laws::watch::{drawing, entering};
-use crate::laws::{Broken, MotionClaims, check_cost, check_reroute, cost, motion, reroute};
+use crate::laws::{Broken, MotionClaims, check_cost, check_local_repair, cost, local_repair, motion};
 use crate::motion::Instance;
 use crate::random::{Purpose, stream};
 use crate::state::State;
@@ -53,13 +53,14 @@ fn motions<D: Domain>(world: &World<D>, number: u64, level: u8) -> Result<Vec<Tr
 }
 
 fn the_reroute<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
-    world.subjects.strategy.as_ref()?.reroute.as_ref()?;
+    world.subjects.strategy.as_ref()?.local_repair.as_ref()?;
     world.subjects.validity.as_ref().filter(|_| !world.subjects.primitives.is_empty())?;
     let tally = Arc::new(Tally::default());
     let counted = Arc::clone(&tally);
     let case = move |world: &World<D>, number: u64, level: u8| {
         let (m, subjects) = (&*world.m, &world.subjects);
-        let Some(reroute) = subjects.strategy.as_ref().and_then(|strategy| strategy.reroute.as_deref()) else {
+        let Some(local_repair) = subjects.strategy.as_ref().and_then(|strategy| strategy.local_repair.as_deref())
+        else {
             return Ok(());
         };
         let Some(validity) = subjects.validity.as_deref() else { return Ok(()) };
@@ -71,11 +72,11 @@ fn the_reroute<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
         for (instance, from, is_blocked) in motions(world, number, level)? {
             entering("is_free_to_turn");
             // Ways around are looked for where something is in the way; what may not turn must refuse anywhere.
-            if reroute.is_free_to_turn(m, &instance) && !is_blocked {
+            if local_repair.is_free_to_turn(m, &instance) && !is_blocked {
                 continue;
             }
             Tally::count(&counted.tried);
-            if check_reroute(m, reroute, validity, (&instance, &from), number, &claims)? {
+            if check_local_repair(m, local_repair, validity, (&instance, &from), number, &claims)? {
                 Tally::count(&counted.reached);
             }
         }
@@ -89,7 +90,7 @@ fn the_reroute<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
         Ok(())
     };
     let cases = world.subjects.effort.cases / 4 + 1;
-    Some(Plan::new("reroute", reroute::LAWS.len() + motion::LAWS.len(), cases, case).finally(once))
+    Some(Plan::new("local_repair", local_repair::LAWS.len() + motion::LAWS.len(), cases, case).finally(once))
 }
 
 fn the_cost<D: Domain>(world: &World<D>) -> Option<Plan<D>> {

@@ -9,7 +9,7 @@ use super::super::{Case, inputs, seed};
 use super::CASES;
 use crate::distance::{Distance, Euclidean, GreedyVisit};
 use crate::laws::distance::{DistanceClaims, FINITE, POSITIVE, RESOLVES, SYMMETRIC, TRIANGLE};
-use crate::laws::domain::{HOP_SYMMETRIC, HOP_TRIANGLE, PURE};
+use crate::laws::domain::{PURE, TRAVEL_BETWEEN_SYMMETRIC, TRAVEL_BETWEEN_TRIANGLE};
 use crate::laws::nearest::{LINEAR, tree_of};
 use crate::laws::{Broken, SpaceClaims, check_distance, check_domain, check_metric, check_nearest};
 use crate::partial::PartialState;
@@ -79,15 +79,17 @@ fn domains() -> Vec<Case> {
                 ..Bench::default()
             })
         }),
-        case("one way hop", "uphill counts twice", HOP_SYMMETRIC, || {
-            domain(&Bench { hop: |a, b| (b[0] - a[0]).max(2.0 * (a[0] - b[0])), ..Bench::default() })
+        case("one way travel", "uphill counts twice", TRAVEL_BETWEEN_SYMMETRIC, || {
+            domain(&Bench { travel_between: |a, b| (b[0] - a[0]).max(2.0 * (a[0] - b[0])), ..Bench::default() })
         }),
-        case("squared hop", "the square of the way between two objects", HOP_TRIANGLE, || {
-            domain(&Bench { hop: |a, b| (a[0] - b[0]).powi(2), ..Bench::default() })
+        case("squared travel", "the square of the way between two objects", TRAVEL_BETWEEN_TRIANGLE, || {
+            domain(&Bench { travel_between: |a, b| (a[0] - b[0]).powi(2), ..Bench::default() })
         }),
-        case("hop by a counter", "breaks ties with noise of its own", PURE, || {
+        case("travel by a counter", "breaks ties with noise of its own", PURE, || {
             domain(&Bench {
-                hop: |a, b| (a[0] - b[0]).abs() + 1e-13 * f64::from(CALLS.fetch_add(1, Ordering::Relaxed) % 7),
+                travel_between: |a, b| {
+                    (a[0] - b[0]).abs() + 1e-13 * f64::from(CALLS.fetch_add(1, Ordering::Relaxed) % 7)
+                },
                 ..Bench::default()
             })
         }),

@@ -194,8 +194,8 @@ fn of_measures() -> Vec<Case> {
             || wait_for(|| space(Sketch { distance, ..Sketch::default() })),
         ),
         case(
-            "waits for the end of the leg",
-            "a motion that looks for its leg, and finds none at the very end",
+            "waits for the end of the segment",
+            "a motion that looks for its segment, and finds none at the very end",
             || {
                 abandon(|| {
                     motion(|t, out| {

@@ -87,7 +87,7 @@ fn excursions() -> Vec<Case> {
         case("jump in the last millionth", "the end is set, not reached", TRAVEL, || {
             check(|t, out| out.robot[0] += if t >= 1.0 { 1.0 } else { 0.999 * t })
         }),
-        case("jump at a knot", "the second leg begins a centimetre before the end of the first", TRAVEL, || {
+        case("jump at a knot", "the second segment begins a centimetre before the end of the first", TRAVEL, || {
             check(|t, out| out.robot[0] += 0.9 * if t < 0.5 { t } else { t - 0.01 })
         }),
         case("long and jumpy", "a length without measure allows every jump", CONTINUOUS, || {
@@ -111,13 +111,13 @@ fn others() -> Vec<Case> {
         case("no number on the way", "a direction of no length half-way", FINITE, || {
             check(|t, out| out.robot[0] += if (0.45..0.55).contains(&t) { f64::NAN } else { t })
         }),
-        case("knots in disorder", "knots are listed leg by leg, the last leg first", KNOTS, || {
+        case("knots in disorder", "knots are listed segment by segment, the last segment first", KNOTS, || {
             check_all(1.0, &[0.6, 0.2, 0.8], forward)
         }),
         case("knots in metres", "knots are told in metres of travel", KNOTS, || {
             check_all(1.0, &[0.0, 0.7, 1.4], forward)
         }),
-        case("knots of nothing", "0 / 0 for a leg without length", KNOTS, || {
+        case("knots of nothing", "0 / 0 for a segment without length", KNOTS, || {
             check_all(1.0, &[0.0, f64::NAN, 1.0], forward)
         }),
         case("grasps for a moment", "the mode is another one between 0.4 and 0.5", MODE, || {

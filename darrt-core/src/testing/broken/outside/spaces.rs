@@ -77,9 +77,9 @@ fn numbers() -> Vec<Case> {
         }),
         case("asserts what is near the end", "panics for the last centimetre of the rail", PANICS, || {
             check(Sketch {
-                shadow: |q| {
+                index_coordinates: |q| {
                     assert!(q[0] < 3.995, "past the end of the table");
-                    bench::shadow(q)
+                    bench::index_coordinates(q)
                 },
                 ..Sketch::default()
             })
@@ -143,9 +143,9 @@ fn purity() -> Vec<Case> {
         case("a space that grows", "the bounds widen with every question", PURE, || {
             CALLS.store(0, Ordering::Relaxed);
             check(Sketch {
-                shadow: |q| {
+                index_coordinates: |q| {
                     let calls = CALLS.fetch_add(1, Ordering::Relaxed) as f64;
-                    let [x, sine] = bench::shadow(q);
+                    let [x, sine] = bench::index_coordinates(q);
                     [x * (1.0 - 1e-12 * calls), sine]
                 },
                 ..Sketch::default()
@@ -168,24 +168,28 @@ fn resolution() -> Vec<Case> {
                     let metres = bench::distance(a, b);
                     if metres < 0.05 { 0.0 } else { metres }
                 },
-                shadow: |_| [0.0; 2],
+                index_coordinates: |_| [0.0; 2],
                 ..Sketch::default()
             })
         }),
         case("deaf to the heading", "the distance is that of the positions alone", DEAF, || {
-            check(Sketch { distance: |a, b| (a[0] - b[0]).abs(), shadow: |q| [q[0], 0.0], ..Sketch::default() })
+            check(Sketch {
+                distance: |a, b| (a[0] - b[0]).abs(),
+                index_coordinates: |q| [q[0], 0.0],
+                ..Sketch::default()
+            })
         }),
         case("deaf to the position", "the distance is that of the headings alone", DEAF, || {
             check(Sketch {
                 distance: |a, b| turn(a[1], b[1]).abs(),
-                shadow: |q| [0.0, q[1].sin()],
+                index_coordinates: |q| [0.0, q[1].sin()],
                 ..Sketch::default()
             })
         }),
         case("squared", "a distance without its root: it adds up too fast", TRIANGLE, || {
             let claims = SpaceClaims { even: false, ..SpaceClaims::default() };
             let distance = |a: &Config, b: &Config| bench::distance(a, b).powi(2);
-            check_with(Sketch { distance, shadow: |_| [0.0; 2], ..Sketch::default() }, &claims)
+            check_with(Sketch { distance, index_coordinates: |_| [0.0; 2], ..Sketch::default() }, &claims)
         }),
     ]
 }

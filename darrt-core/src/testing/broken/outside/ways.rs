@@ -11,13 +11,13 @@ use super::CASES;
 use crate::cost::{ExecutionCost, TravelCost};
 use crate::laws::cost::{BETWEEN, FINITE, GROWS, PURE as COST_PURE, STEP};
 use crate::laws::domain::{CARRIED, MAY_GO_ON, PURE, WITHOUT_ROBOT};
-use crate::laws::reroute::{ENDS, FREE, PURE as TURNS_PURE, REFUSES, SAME, SEEDED, TURNS};
+use crate::laws::local_repair::{ENDS, FREE, PURE as TURNS_PURE, REFUSES, SAME, SEEDED, TURNS};
 use crate::laws::{
-    Broken, MotionClaims, PrimitiveClaims, SpaceClaims, check_cost, check_domain, check_reroute, try_primitive,
+    Broken, MotionClaims, PrimitiveClaims, SpaceClaims, check_cost, check_domain, check_local_repair, try_primitive,
 };
+use crate::local_repair::{LocalRepair, NoWay};
 use crate::motion::{Instance, Waypoints};
 use crate::random::{Purpose, stream};
-use crate::reroute::{NoWay, Reroute};
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, State};
 use crate::validity::Validity;
@@ -28,14 +28,14 @@ fn counted() -> u64 {
     CALLS.fetch_add(1, Ordering::Relaxed)
 }
 
-type Way = fn(&Bench, &Instance<Bench>, &State<Bench>, &mut dyn Rng) -> Option<Instance<Bench>>;
+type AroundFn = fn(&Bench, &Instance<Bench>, &State<Bench>, &mut dyn Rng) -> Option<Instance<Bench>>;
 
 /// A way around made of functions.
 #[derive(Clone, Copy)]
 struct Around {
     turns: fn(&Instance<Bench>) -> bool,
     refuses: NoWay,
-    way: Way,
+    way: AroundFn,
 }
 
 const HONEST: Around = Around {
@@ -44,12 +44,12 @@ const HONEST: Around = Around {
     way: |m, motion, from, rng| over(m, motion, from, rng, |_, _| ()),
 };
 
-impl Reroute<Bench> for Around {
+impl LocalRepair<Bench> for Around {
     fn is_free_to_turn(&self, _: &Bench, motion: &Instance<Bench>) -> bool {
         (self.turns)(motion)
     }
 
-    fn reroute(
+    fn repair(
         &self,
         m: &Bench,
         _: &dyn Validity<Bench>,
@@ -77,13 +77,13 @@ fn over(
     let mut middle = motion.at(m, 0.5, from);
     middle.robot[1] = rng.random_range(-3.0..3.0);
     change(&mut middle, &mut end);
-    let legs = [(&start, &middle), (&middle, &end)].map(|(a, b)| m.robot.distance(&a.robot, &b.robot) + 1e-12);
-    let way = Waypoints::new(vec![start.clone(), middle, end], &legs, start.mode)?;
+    let segments = [(&start, &middle), (&middle, &end)].map(|(a, b)| m.robot.distance(&a.robot, &b.robot) + 1e-12);
+    let way = Waypoints::new(vec![start.clone(), middle, end], &segments, start.mode)?;
     Some(Instance { contacts: motion.contacts, ..instance(way, motion.moves) })
 }
 
 /// A drive before the wall, and a cart that is dragged.
-fn around(reroute: &Around) -> Result<(), Broken> {
+fn around(local_repair: &Around) -> Result<(), Broken> {
     let (m, rule) = (Bench::default(), Rule::default());
     for i in 0..CASES / 8 {
         let mut rng = inputs(i);
@@ -93,7 +93,7 @@ fn around(reroute: &Around) -> Result<(), Broken> {
         let drive = go(&m, &from, [from.robot[0] + 0.4, rng.random_range(-3.0..3.0)]);
         let dragged = drag(&from, 3.0).map(|motion| Instance { reversible: false, ..motion });
         for motion in std::iter::once(drive).chain(dragged) {
-            check_reroute(&m, reroute, &rule, (&motion, &from), seed() + i, &MotionClaims::default())?;
+            check_local_repair(&m, local_repair, &rule, (&motion, &from), seed() + i, &MotionClaims::default())?;
         }
     }
     Ok(())
@@ -280,7 +280,10 @@ fn domains() -> Vec<Case> {
             domain(&Bench { without_robot, ..Bench::default() })
         }),
         case("other ways without the robot", "without the robot nothing is far away", WITHOUT_ROBOT, || {
-            domain(&Bench { without_robot: |m| Some(Bench { hop: |_, _| 0.0, ..m.clone() }), ..Bench::default() })
+            domain(&Bench {
+                without_robot: |m| Some(Bench { travel_between: |_, _| 0.0, ..m.clone() }),
+                ..Bench::default()
+            })
         }),
     ]
 }

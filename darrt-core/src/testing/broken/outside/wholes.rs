@@ -25,8 +25,8 @@ const GO: Act = Act {
 /// To the wall, and from there to the target.
 fn through(m: &Bench, from: &State<Bench>, target: Config) -> Option<Instance<Bench>> {
     let [middle, end] = [[1.2, 0.0], target].map(|robot| State { robot, ..from.clone() });
-    let legs = [(from, &middle), (&middle, &end)].map(|(a, b)| (m.robot.distance)(&a.robot, &b.robot));
-    Some(instance(Waypoints::new(vec![from.clone(), middle, end], &legs, from.mode.clone())?, ComponentSet::ROBOT))
+    let segments = [(from, &middle), (&middle, &end)].map(|(a, b)| (m.robot.distance)(&a.robot, &b.robot));
+    Some(instance(Waypoints::new(vec![from.clone(), middle, end], &segments, from.mode.clone())?, ComponentSet::ROBOT))
 }
 
 fn check(start: State<Bench>, act: Act) -> Result<(), Broken> {

@@ -70,8 +70,8 @@ impl Split {
         let sum = |run: &Record, name: Option<&str>, part: fn(&PrimitiveRecord) -> f64| -> f64 {
             run.primitives.iter().filter(|p| name.is_none_or(|name| p.name == name)).map(part).sum()
         };
-        let all: fn(&PrimitiveRecord) -> f64 = |p| p.propagate_s + p.collision_s + p.reroute_s;
-        let work: [fn(&PrimitiveRecord) -> f64; 3] = [|p| p.propagate_s, |p| p.collision_s, |p| p.reroute_s];
+        let all: fn(&PrimitiveRecord) -> f64 = |p| p.propagate_s + p.collision_s + p.local_repair_s;
+        let work: [fn(&PrimitiveRecord) -> f64; 3] = [|p| p.propagate_s, |p| p.collision_s, |p| p.local_repair_s];
         let rest = (total - verification - mean(&|run| sum(run, None, all))).max(0.0);
         let with_rest = |parts: Vec<f64>| parts.into_iter().chain([verification, rest]).collect();
         Self {

@@ -3,7 +3,7 @@
 use darrt_primitives::contract::ObjectRule;
 use nalgebra::{Isometry3, Point2, Vector3};
 
-use super::{Judge, Trial, Way};
+use super::{Judge, SlideDirection, Trial};
 use crate::verify::drag::Drag;
 use crate::verify::mode::Mode;
 use crate::verify::motion::{Segment, State};
@@ -76,7 +76,7 @@ impl<'a> Judge<'a> {
         trial: &Trial<'a>,
         time: f64,
         now: &State,
-        way: Option<Way>,
+        way: Option<SlideDirection>,
     ) -> Result<(), Refusal> {
         let site = trial.site;
         if let (Some(core), Some(object)) = (&trial.core, trial.act.pushed) {

@@ -1,6 +1,6 @@
 //! Motions that were taken as free are judged once a plan needs them.
 //!
-//! Whether a whole motion is free is dear to find out, and mostly it is: primitives ask about its cornerstones before they
+//! Whether a whole motion is free is expensive to find out, and mostly it is: primitives ask about its cornerstones before they
 //! propose it. A search that puts the question off asks it for the few motions of a plan, not for all those of a tree.
 
 use std::sync::Arc;
@@ -10,15 +10,15 @@ use rand::Rng;
 use crate::budget::Stop;
 use crate::domain::Domain;
 use crate::extend::Extender;
+use crate::local_repair::NoWay;
 use crate::motion::Instance;
 use crate::plan::Step;
-use crate::reroute::NoWay;
 use crate::state::State;
 use crate::validity::Blame;
 
-/// Why steps stay unsettled.
+/// Why steps stay without a verdict.
 #[derive(Debug)]
-pub enum Unsettled<D: Domain> {
+pub enum NotValidated<D: Domain> {
     /// This motion is blocked, and there is no way around that could be found.
     Blocked(Arc<Instance<D>>, Blame),
     /// Nobody waits for them any more.
@@ -30,52 +30,52 @@ pub enum Unsettled<D: Domain> {
 /// a cancellation stops it: a plan that was found in time is worth the rest.
 ///
 /// # Errors
-/// [`Unsettled`] with the first motion that stays blocked.
+/// [`NotValidated`] with the first motion that stays blocked.
 ///
 /// # Source
 /// Bohlin and Kavraki, Path planning using lazy PRM, ICRA 2000: edges are checked when a path wants them.
-pub fn settle<D: Domain>(
+pub fn validate_steps<D: Domain>(
     extender: &Extender<'_, D>,
     here: &State<D>,
     steps: impl IntoIterator<Item = Step<D>>,
     rng: &mut dyn Rng,
-) -> Result<Vec<Step<D>>, Unsettled<D>> {
+) -> Result<Vec<Step<D>>, NotValidated<D>> {
     if !extender.options.defer {
         return Ok(steps.into_iter().collect());
     }
     let m = extender.problem.domain();
     let mut here = here.clone();
     let judged = |step: Step<D>| {
-        let (step, _) = settled(extender, &here, step, rng)?;
+        let (step, _) = validate_step(extender, &here, step, rng)?;
         here = step.instance.at(m, step.until, &here);
         Ok(step)
     };
     steps.into_iter().map(judged).collect()
 }
 
-/// One step that begins at `here`, judged, and how much less care than there can be it is free with; see [`settle`].
+/// One step that begins at `here`, judged, and how much less care than there can be it is free with; see [`validate_steps`].
 ///
 /// # Errors
-/// [`Unsettled`] if it stays blocked.
-pub(crate) fn settled<D: Domain>(
+/// [`NotValidated`] if it stays blocked.
+pub(crate) fn validate_step<D: Domain>(
     extender: &Extender<'_, D>,
     here: &State<D>,
     mut step: Step<D>,
     rng: &mut dyn Rng,
-) -> Result<(Step<D>, usize), Unsettled<D>> {
-    let Extender { problem, reroute, interrupt, .. } = *extender;
+) -> Result<(Step<D>, usize), NotValidated<D>> {
+    let Extender { problem, local_repair, interrupt, .. } = *extender;
     let (m, validity) = (problem.domain(), problem.validity());
     if interrupt.stop() == Some(Stop::Cancelled) {
-        return Err(Unsettled::Cancelled);
+        return Err(NotValidated::Cancelled);
     }
-    let turns = reroute.filter(|r| r.is_free_to_turn(m, &step.instance));
+    let turns = local_repair.filter(|r| r.is_free_to_turn(m, &step.instance));
     let most = turns.map_or(0, |_| validity.most_care());
     let (mut care, mut may_go_around) = (most, true);
     loop {
         let free = validity.free_prefix_with(care, m, &step.instance, here);
         let Some(blame) = free.blame.filter(|_| free.fraction < step.until) else { break };
         let around = match turns.filter(|_| may_go_around) {
-            Some(r) => r.reroute(m, validity, care, &step.instance, here, rng),
+            Some(r) => r.repair(m, validity, care, &step.instance, here, rng),
             None => Err(NoWay::WithAnyCare),
         };
         may_go_around = around.as_ref().err() != Some(&NoWay::WithAnyCare);
@@ -84,7 +84,7 @@ pub(crate) fn settled<D: Domain>(
             step.instance = Arc::new(around);
             break;
         }
-        care = care.checked_sub(1).ok_or_else(|| Unsettled::Blocked(Arc::clone(&step.instance), blame))?;
+        care = care.checked_sub(1).ok_or_else(|| NotValidated::Blocked(Arc::clone(&step.instance), blame))?;
     }
     Ok((step, most - care))
 }

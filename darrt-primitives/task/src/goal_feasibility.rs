@@ -18,8 +18,8 @@ use crate::problem_file::{GoalState, GoalTarget, Object, ObjectGoal, ProblemFile
 /// Checks that for every object some goal may hold at the start, or that it can be moved as that goal needs.
 ///
 /// # Errors
-/// [`PlanningError::GoalWithoutMeans`] with the object, the goals and what is missing for each.
-pub fn check_means(
+/// [`PlanningError::InfeasibleGoal`] with the object, the goals and what is missing for each.
+pub fn check_feasibility(
     problem: &ProblemFile,
     allowed: impl IntoIterator<Item = (PrimitiveId, Contract)>,
     robot: &impl Manipulator,
@@ -28,9 +28,9 @@ pub fn check_means(
     let mut in_the_hand = None;
     for (name, alternatives) in problem.goal.by_object() {
         let Some(object) = problem.object(name) else { continue };
-        let means = Means::new(problem, object, &allowed, robot);
+        let means = Feasibility::new(problem, object, &allowed, robot);
         let lacks: Vec<_> = alternatives.iter().map(|goal| means.lack(problem, goal)).collect();
-        let refuse = |why: String| Err(PlanningError::GoalWithoutMeans { object: name.to_owned(), why });
+        let refuse = |why: String| Err(PlanningError::InfeasibleGoal { object: name.to_owned(), why });
         if lacks.iter().all(Option::is_some) {
             return refuse(lacks.into_iter().flatten().collect::<Vec<_>>().join("; and "));
         }
@@ -43,14 +43,14 @@ pub fn check_means(
 }
 
 /// What can be done with one object, each with the reason why not.
-pub(crate) struct Means<'a> {
+pub(crate) struct Feasibility<'a> {
     pub(crate) object: &'a Object,
     pub(crate) pick: Result<(), String>,
     pub(crate) place: Result<(), String>,
     pub(crate) push: Result<(), String>,
 }
 
-impl<'a> Means<'a> {
+impl<'a> Feasibility<'a> {
     pub(crate) fn new(
         problem: &ProblemFile,
         object: &'a Object,
@@ -141,7 +141,7 @@ mod tests {
 
     fn checked(problem: &ProblemFile) -> Result<(), PlanningError> {
         let (robot, _) = <Pr2 as crate::robot::TaskRobot>::build(&problem.robot).unwrap();
-        check_means(problem, registry().allowed(problem), &robot)
+        check_feasibility(problem, registry().allowed(problem), &robot)
     }
 
     /// What is said about an edited Plate1, whose plate goes from the central table to the side table.

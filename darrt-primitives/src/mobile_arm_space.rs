@@ -16,7 +16,7 @@ pub const ARM: GroupSet = GroupSet::only(1);
 
 /// Base and arm. Continuous joints take the shorter way round.
 #[derive(Debug, Clone)]
-pub struct ArmSpace<J> {
+pub struct MobileArmSpace<J> {
     base: Se2,
     limits: Vec<JointLimit>,
     weights_m: Vec<f64>,
@@ -24,7 +24,7 @@ pub struct ArmSpace<J> {
     zeros: J,
 }
 
-impl<J: JointVector> ArmSpace<J> {
+impl<J: JointVector> MobileArmSpace<J> {
     /// Base positions in `[lower, upper]` (metres), joints within `limits`, hand travel per joint unit `weights_m`.
     ///
     /// # Errors
@@ -90,7 +90,7 @@ pub fn difference(from: f64, to: f64, limit: &JointLimit) -> f64 {
     if limit.is_unlimited() { turn(from, to) } else { to - from }
 }
 
-impl<J: JointVector> ComponentSpace for ArmSpace<J> {
+impl<J: JointVector> ComponentSpace for MobileArmSpace<J> {
     type Config = Configuration<J>;
 
     fn dimension(&self) -> usize {
@@ -137,8 +137,8 @@ impl<J: JointVector> ComponentSpace for ArmSpace<J> {
         BASE.union(ARM)
     }
 
-    fn shadow(&self, q: &Configuration<J>, mark: &mut dyn FnMut(u32, f64)) {
-        self.base.shadow(&q.base, mark);
+    fn index_coordinates(&self, q: &Configuration<J>, mark: &mut dyn FnMut(u32, f64)) {
+        self.base.index_coordinates(&q.base, mark);
         for (q, (limit, w)) in q.arm.as_ref().iter().zip(self.limits.iter().zip(&self.weights_m)) {
             if limit.is_unlimited() {
                 // No chord is longer than its arc.

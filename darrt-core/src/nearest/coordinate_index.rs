@@ -32,9 +32,9 @@ struct Level {
     penalties_m: Vec<f32>,
 }
 
-/// The mirror of one tree.
+/// The index of one tree.
 #[derive(Debug)]
-pub(crate) struct Mirror {
+pub(crate) struct CoordinateIndex {
     /// Coordinates per node.
     width: usize,
     levels: Vec<Level>,
@@ -63,8 +63,8 @@ fn index(at: usize) -> u32 {
     u32::try_from(at).unwrap_or(u32::MAX)
 }
 
-impl Mirror {
-    /// An empty mirror for nodes of `width` coordinates.
+impl CoordinateIndex {
+    /// An empty index for nodes of `width` coordinates.
     pub(crate) fn new(width: usize) -> Self {
         Self {
             width,
@@ -256,7 +256,7 @@ impl Mirror {
         }
     }
 
-    /// Puts a box around the items of one block of the level below. Penalties are left to [`Mirror::set_penalty`], but for
+    /// Puts a box around the items of one block of the level below. Penalties are left to [`CoordinateIndex::set_penalty`], but for
     /// those of a box that has none yet.
     fn enclose(&mut self, height: usize, item: usize) {
         let Some((below, above)) = self.levels.split_at_mut_checked(height) else { return };

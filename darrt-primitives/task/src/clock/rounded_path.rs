@@ -18,7 +18,7 @@ pub(crate) struct Spot {
 
 /// The way of a phase.
 #[derive(Debug, Clone)]
-pub(crate) struct Way {
+pub(crate) struct RoundedPath {
     knots: Vec<Vec<f64>>,
     lengths: Vec<f64>,
     /// Radius at every inner knot.
@@ -34,7 +34,7 @@ pub(crate) struct Corner {
     pub(crate) after: Vec<f64>,
 }
 
-impl Way {
+impl RoundedPath {
     /// The way through these points; `lengths` are those of the lines, `blends` the radii at the inner knots.
     pub(crate) fn new(knots: Vec<Vec<f64>>, lengths: Vec<f64>, blends: Vec<f64>) -> Self {
         let mut gone = 0.0;
@@ -128,9 +128,9 @@ impl Way {
 mod tests {
     use super::*;
 
-    fn square() -> Way {
+    fn square() -> RoundedPath {
         let knots = [[0.0, 0.0], [2.0, 0.0], [2.0, 3.0], [1.0, 2.0]].map(|p| p.to_vec()).to_vec();
-        Way::new(knots, vec![1.0, 2.0, 1.0], vec![0.5, 0.25])
+        RoundedPath::new(knots, vec![1.0, 2.0, 1.0], vec![0.5, 0.25])
     }
 
     #[test]
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn without_rounding_it_goes_through_the_knots() {
         let knots = [[0.0], [1.0], [0.5]].map(|p| p.to_vec()).to_vec();
-        let way = Way::new(knots, vec![1.0, 1.0], vec![0.0]);
+        let way = RoundedPath::new(knots, vec![1.0, 1.0], vec![0.0]);
         assert_eq!(way.at(1.0).point, [1.0]);
         assert_eq!(way.at(1.5).point, [0.75]);
     }

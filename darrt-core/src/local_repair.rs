@@ -28,18 +28,18 @@ pub enum NoWay {
 /// # Example
 /// ```
 /// use darrt_core::prelude::*;
-/// use darrt_core::reroute::{NoWay, Reroute};
+/// use darrt_core::local_repair::{NoWay, LocalRepair};
 /// use rand::Rng;
 ///
 /// /// Another one's ways around, but never for an instance that names an object.
 /// struct Alone<R>(R);
 ///
-/// impl<D: Domain, R: Reroute<D>> Reroute<D> for Alone<R> {
+/// impl<D: Domain, R: LocalRepair<D>> LocalRepair<D> for Alone<R> {
 ///     fn is_free_to_turn(&self, m: &D, instance: &Instance<D>) -> bool {
 ///         instance.object.is_none() && self.0.is_free_to_turn(m, instance)
 ///     }
 ///
-///     fn reroute(
+///     fn repair(
 ///         &self,
 ///         m: &D,
 ///         validity: &dyn Validity<D>,
@@ -51,11 +51,11 @@ pub enum NoWay {
 ///         if !self.is_free_to_turn(m, instance) {
 ///             return Err(NoWay::WithAnyCare);
 ///         }
-///         self.0.reroute(m, validity, care, instance, from, rng)
+///         self.0.repair(m, validity, care, instance, from, rng)
 ///     }
 /// }
 /// ```
-pub trait Reroute<D: Domain>: Send + Sync {
+pub trait LocalRepair<D: Domain>: Send + Sync {
     /// May this instance go any way between its ends? A transit may; a push, an approach or a pick may not.
     fn is_free_to_turn(&self, m: &D, instance: &Instance<D>) -> bool;
 
@@ -64,7 +64,7 @@ pub trait Reroute<D: Domain>: Send + Sync {
     ///
     /// # Errors
     /// [`NoWay`] if the instance must go as it does (a push, an approach), or if no way was found with the effort allowed.
-    fn reroute(
+    fn repair(
         &self,
         m: &D,
         validity: &dyn Validity<D>,

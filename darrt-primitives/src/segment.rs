@@ -1,17 +1,17 @@
-//! One leg of a motion: what moves on it, what that may meet, and how fast.
+//! One segment of a motion: what moves on it, what that may meet, and how fast.
 
 use darrt_core::space::so2::turn;
 use darrt_geom::body_set::{BodyIndex, BodySet};
 use nalgebra::Isometry3;
 
+use crate::collision_scene::{CollisionScene, Worker};
 use crate::manipulator::Manipulator;
 use crate::push::slide::Slide;
-use crate::surroundings::{Surroundings, Worker};
 use crate::tabletop::{Tabletop, TabletopState};
 
-/// One leg of a motion: the robot moves in a straight line of its space, and what is pushed on an arc.
+/// One segment of a motion: the robot moves in a straight line of its space, and what is pushed on an arc.
 #[derive(Debug)]
-pub(crate) struct Leg {
+pub(crate) struct Segment {
     /// Parameter at its beginning.
     pub(crate) begin: f64,
     /// Parameter at its end.
@@ -26,7 +26,7 @@ pub(crate) struct Leg {
     pub(crate) fastest: f64,
 }
 
-impl Leg {
+impl Segment {
     /// What moves from `a`, where every body stands, to `b`, and how fast each body travels: written to `worker.reach`,
     /// metres per unit of the parameter, which goes from `begin` to `end`.
     pub(crate) fn new<M: Manipulator>(
@@ -36,7 +36,7 @@ impl Leg {
         (begin, end): (f64, f64),
         worker: &mut Worker,
     ) -> Self {
-        let around = &**m.surroundings();
+        let around = &**m.collision_scene();
         let span = end - begin;
         let mut moved = around.moved(a, b);
         let mut chain = *around.all_links();
@@ -81,14 +81,14 @@ impl Leg {
         Self { begin, end, moved, against, chain, fastest }
     }
 
-    /// Begins to watch the pairs that may come near on this leg; see [`Surroundings::free_until`].
-    pub(crate) fn watch(&self, around: &Surroundings, worker: &mut Worker) {
+    /// Begins to watch the pairs that may come near on this segment; see [`CollisionScene::free_until`].
+    pub(crate) fn watch(&self, around: &CollisionScene, worker: &mut Worker) {
         around.watch(worker, (&self.moved, &self.against, &self.chain), (self.begin, self.end));
     }
 }
 
 /// Bound on the travel of a body that slides from one pose to another.
-fn slide_travel(around: &Surroundings, body: BodyIndex, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+fn slide_travel(around: &CollisionScene, body: BodyIndex, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
     let slide = Slide::new(*from, *to);
     let turned = match around.model().ball(body) {
         _ if slide.turn() == 0.0 => 0.0,
@@ -100,7 +100,7 @@ fn slide_travel(around: &Surroundings, body: BodyIndex, from: &Isometry3<f64>, t
 
 /// Bound on the travel of a body, now at `pose`, that turns about the axis of the base and drives with it.
 fn drive_travel<M: Manipulator>(
-    around: &Surroundings,
+    around: &CollisionScene,
     body: BodyIndex,
     pose: &Isometry3<f64>,
     a: &TabletopState<M>,

@@ -9,7 +9,7 @@ use darrt_core::state::ObjectId;
 use darrt_geom::body_set::{BodyIndex, BodySet};
 use darrt_geom::collide::Closer;
 
-use super::Surroundings;
+use super::CollisionScene;
 use crate::manipulator::Manipulator;
 use crate::mode::Contacts;
 use crate::tabletop::{SafetySettings, TabletopState};
@@ -19,7 +19,7 @@ use crate::tabletop::{SafetySettings, TabletopState};
 pub struct Strictness {
     /// The margins, which hold between the states looked at as well.
     pub safety: SafetySettings,
-    /// Distances beyond this are not told apart: the farthest that a motion advances at once, metres.
+    /// Distances beyond this count as this: the farthest that a motion advances at once, metres.
     pub cap_m: f64,
 }
 
@@ -101,7 +101,7 @@ pub(crate) struct Keep {
     pub(super) closer: Vec<Closer>,
 }
 
-impl Surroundings {
+impl CollisionScene {
     /// The most care there is: see [`Validity::most_care`](darrt_core::validity::Validity::most_care).
     pub fn most_care(&self) -> usize {
         let SafetySettings { robot_margin_m, held_margin_m, object_margin_m, least_margin_m, .. } =

@@ -8,14 +8,14 @@ use darrt_core::space::ComponentSpace;
 use darrt_geom::body_set::BodySet;
 use rand::{Rng, RngExt};
 
+use crate::collision_scene::{Strict, Worker};
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::Contacts;
-use crate::surroundings::{Strict, Worker};
 use crate::tabletop::{Tabletop, TabletopState};
 
 /// How hard the search tries.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ArmDetour {
+pub struct ArmRepair {
     /// States that are checked before it gives up.
     pub states: usize,
     /// Travel bound between two states that are checked, metres. The search looks at samples only: the way that it
@@ -27,7 +27,7 @@ pub struct ArmDetour {
     pub shortcuts: usize,
 }
 
-impl Default for ArmDetour {
+impl Default for ArmRepair {
     fn default() -> Self {
         Self { states: 1500, spacing_m: 0.12, step_m: 3.0, shortcuts: 6 }
     }
@@ -55,7 +55,7 @@ struct Search<'a, M: Manipulator> {
     step_m: f64,
 }
 
-impl ArmDetour {
+impl ArmRepair {
     /// Configurations from that of `from` to that of `end`, both among them; only the arm moves. Objects and mode are as in
     /// `inside`, with which the motion begins. With this [care](darrt_core::validity::Validity::most_care). `None` if no way is found.
     pub(super) fn find<M: Manipulator>(
@@ -67,7 +67,7 @@ impl ArmDetour {
         end: &TabletopState<M>,
         rng: &mut dyn Rng,
     ) -> Option<Vec<Configuration<M::Joints>>> {
-        let around = m.surroundings();
+        let around = m.collision_scene();
         around.with_worker(|worker| {
             around.pose_all(m.manipulator(), inside, worker);
             around.set_rules(inside, &Contacts::default(), Strict::with(care), worker);
@@ -101,7 +101,7 @@ impl<M: Manipulator> Search<'_, M> {
             }
         }
         let (moved, against) = &self.pairs;
-        let around = self.m.surroundings();
+        let around = self.m.collision_scene();
         around.pose(robot, &self.state, moved, self.worker);
         around.is_clear(self.worker, moved, against)
     }

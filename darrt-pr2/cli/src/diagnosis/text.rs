@@ -19,7 +19,7 @@ pub(crate) fn of_cause(cause: &Cause) -> Vec<String> {
         Cause::GoalOccupied { object, by, occupant, at: [x, y, z] } => {
             vec![format!("the goal of `{object}` at ({x:.3}, {y:.3}, {z:.3}) is taken by `{by}`{occupant}")]
         }
-        Cause::NoMeans { object, lack } => vec![format!("the goal of `{object}` cannot be reached: {lack}")],
+        Cause::InfeasibleGoal { object, lack } => vec![format!("the goal of `{object}` cannot be reached: {lack}")],
         Cause::MissingPrimitive { primitive, needs } => {
             vec![format!("`{primitive}` is made of `{needs}`, which is not among the primitives")]
         }

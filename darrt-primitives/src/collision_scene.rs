@@ -35,7 +35,7 @@ pub use margins::{NearPair, Strictness};
 pub use room::Hand;
 
 /// Bodies of the robot, the objects and the scene, and the rules of touching.
-pub struct Surroundings {
+pub struct CollisionScene {
     model: CollisionModel,
     strictness: Strictness,
     /// How much farther apart than their clearance pairs are at the states looked at, metres.
@@ -68,12 +68,12 @@ pub(crate) struct Worker {
     keep: Keep,
     /// By body: metres that it travels per unit of the motion's parameter.
     pub(crate) reach: Vec<f64>,
-    /// By link: metres that it travels on one leg of a motion.
+    /// By link: metres that it travels on one segment of a motion.
     pub(crate) link_travel: Vec<f64>,
     known: Known,
 }
 
-impl Surroundings {
+impl CollisionScene {
     /// The model of `robot` with the `movables` among the `fixed` bodies.
     ///
     /// # Errors
@@ -369,8 +369,8 @@ impl Surroundings {
     }
 }
 
-impl std::fmt::Debug for Surroundings {
+impl std::fmt::Debug for CollisionScene {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Surroundings").field("strictness", &self.strictness).finish_non_exhaustive()
+        f.debug_struct("CollisionScene").field("strictness", &self.strictness).finish_non_exhaustive()
     }
 }

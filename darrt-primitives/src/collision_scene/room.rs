@@ -8,7 +8,7 @@ use darrt_geom::allowed::AllowedContacts;
 use darrt_geom::body_set::{BodyIndex, BodySet};
 use nalgebra::{Isometry3, Point3};
 
-use super::{Strict, Surroundings, Worker};
+use super::{CollisionScene, Strict, Worker};
 use crate::manipulator::{Configuration, Manipulator, world_from_base};
 use crate::mode::Contacts;
 use crate::push::slide::Slide;
@@ -20,7 +20,7 @@ pub struct Hand {
     tool_from_link: Vec<(BodyIndex, Isometry3<f64>)>,
 }
 
-impl Surroundings {
+impl CollisionScene {
     /// Do base, trunk and whatever else is rigid to the base keep clear of the fixed bodies? Asks nothing of the arm.
     pub fn is_base_clear<M: Manipulator>(&self, robot: &M, q: &Configuration<M::Joints>) -> bool {
         self.with_base_at(robot, q, |worker, against| {
@@ -32,7 +32,7 @@ impl Surroundings {
         })
     }
 
-    /// [`Surroundings::is_base_clear`] with a reason.
+    /// [`CollisionScene::is_base_clear`] with a reason.
     ///
     /// # Errors
     /// The first pair found.
@@ -68,7 +68,7 @@ impl Surroundings {
         })
     }
 
-    /// The hand with the opening of `like`, for [`Surroundings::check_hand`].
+    /// The hand with the opening of `like`, for [`CollisionScene::check_hand`].
     pub fn hand<M: Manipulator>(&self, robot: &M, like: &TabletopState<M>) -> Hand {
         let mut world_from_link = vec![Isometry3::identity(); self.links.len()];
         robot.link_poses(&like.robot, like.mode.gap_m(), &mut world_from_link);
@@ -97,7 +97,7 @@ impl Surroundings {
         hit.map(|_| ()).map_err(|hit| self.blame(&hit))
     }
 
-    /// [`Surroundings::check_hand`] with [care](Surroundings::most_care) and without reasons.
+    /// [`CollisionScene::check_hand`] with [care](CollisionScene::most_care) and without reasons.
     pub fn is_hand_clear<M: Manipulator>(
         &self,
         hand: &Hand,
@@ -134,7 +134,7 @@ impl Surroundings {
         (moved, BodySet::ALL.difference(&self.all_links.difference(&self.hand_links)))
     }
 
-    /// How far a resting object could slide with this [care](Surroundings::most_care) if the robot were not there: metres
+    /// How far a resting object could slide with this [care](CollisionScene::most_care) if the robot were not there: metres
     /// along the way of its centre, at most all of it, and what ends it.
     pub fn free_slide<M: Manipulator>(
         &self,

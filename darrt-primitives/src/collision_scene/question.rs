@@ -1,15 +1,15 @@
-//! Is anything too near to anything else? Questions about one state, and about the legs of a motion.
+//! Is anything too near to anything else? Questions about one state, and about the segments of a motion.
 
 use darrt_core::validity::Blame;
 use darrt_geom::body_set::BodySet;
 use darrt_geom::collide::{Hit, Query, Travel};
 
-use super::{Strict, Surroundings, Worker};
+use super::{CollisionScene, Strict, Worker};
 use crate::manipulator::Manipulator;
 use crate::mode::Contacts;
 use crate::tabletop::TabletopState;
 
-impl Surroundings {
+impl CollisionScene {
     /// Is nothing too near to anything else in `state`, `contacts` excepted?
     ///
     /// # Errors
@@ -18,7 +18,7 @@ impl Surroundings {
         self.check_at(robot, state, contacts, Strict::with(0))
     }
 
-    /// [`Surroundings::check`] with [care](Surroundings::most_care), and without reasons, which takes less time where it is
+    /// [`CollisionScene::check`] with [care](CollisionScene::most_care), and without reasons, which takes less time where it is
     /// asked often.
     pub fn is_state_clear<M: Manipulator>(
         &self,
@@ -34,7 +34,7 @@ impl Surroundings {
         })
     }
 
-    /// [`Surroundings::is_state_clear`] without care where [`Surroundings::is_base_clear`] is known.
+    /// [`CollisionScene::is_state_clear`] without care where [`CollisionScene::is_base_clear`] is known.
     pub fn is_rest_clear<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, contacts: &Contacts) -> bool {
         self.with_worker(|worker| {
             self.set_rules(state, contacts, Strict::with(0), worker);
@@ -62,7 +62,7 @@ impl Surroundings {
         is_clear
     }
 
-    /// [`Surroundings::check`] with this strictness.
+    /// [`CollisionScene::check`] with this strictness.
     ///
     /// # Errors
     /// The first pair found.
@@ -103,14 +103,14 @@ impl Surroundings {
         self.model.lower_bound(scratch, &Query { moved, against, allowed, clearance, closer, cap: cap_m })
     }
 
-    /// Are the pairs of one body in `moved` and one in `against` clear? [`Surroundings::lower_bound`] without reasons.
+    /// Are the pairs of one body in `moved` and one in `against` clear? [`CollisionScene::lower_bound`] without reasons.
     pub(crate) fn is_clear(&self, worker: &mut Worker, moved: &BodySet, against: &BodySet) -> bool {
         let Worker { scratch, allowed, keep, .. } = worker;
         let (clearance, closer) = (keep.most_m, keep.closer.as_slice());
         self.model.is_clear(scratch, &Query { moved, against, allowed, clearance, closer, cap: 0.0 })
     }
 
-    /// Begins to watch a leg of a motion, from one parameter to another, on which every body travels as `worker.reach`
+    /// Begins to watch a segment of a motion, from one parameter to another, on which every body travels as `worker.reach`
     /// says. The bodies in `chain` hang together.
     pub(crate) fn watch(
         &self,

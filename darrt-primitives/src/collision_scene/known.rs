@@ -51,7 +51,7 @@ impl Known {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surroundings::Strict;
+    use crate::collision_scene::Strict;
     use darrt_geom::allowed::ContactReason;
     use darrt_geom::body_set::BodyIndex;
 

@@ -1,14 +1,14 @@
 //! A way around for a blocked transit or transfer: [`arm`] searches at random, the base by a planner of its own,
 //! [`BasePath`].
 
+use darrt_core::local_repair::{LocalRepair, NoWay};
 use darrt_core::motion::Instance;
-use darrt_core::reroute::{NoWay, Reroute};
 use darrt_core::validity::Validity;
 use rand::Rng;
 
 pub mod arm;
 
-pub use arm::ArmDetour;
+pub use arm::ArmRepair;
 
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::base_path::BasePath;
@@ -19,21 +19,21 @@ use crate::tabletop::{Tabletop, TabletopState};
 
 /// How ways around are looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Detour {
+pub struct TransitRepair {
     /// Where the arm moves.
-    pub arm: ArmDetour,
+    pub arm: ArmRepair,
     /// Where the base moves.
     pub base: BasePath,
 }
 
-impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
+impl<M: Manipulator> LocalRepair<Tabletop<M>> for TransitRepair {
     fn is_free_to_turn(&self, m: &Tabletop<M>, instance: &Instance<Tabletop<M>>) -> bool {
         // Not an approach, a push, a pick or a place.
         let is_free = m.contract(instance.primitive).is_some_and(Contract::is_free);
         instance.reversible && is_free && instance.contacts == Contacts::default()
     }
 
-    fn reroute(
+    fn repair(
         &self,
         m: &Tabletop<M>,
         validity: &dyn Validity<Tabletop<M>>,
@@ -42,7 +42,7 @@ impl<M: Manipulator> Reroute<Tabletop<M>> for Detour {
         from: &TabletopState<M>,
         rng: &mut dyn Rng,
     ) -> Result<Instance<Tabletop<M>>, NoWay> {
-        if !Reroute::<Tabletop<M>>::is_free_to_turn(self, m, instance) {
+        if !LocalRepair::<Tabletop<M>>::is_free_to_turn(self, m, instance) {
             return Err(NoWay::WithAnyCare);
         }
         let end = instance.at(m, 1.0, from);

@@ -1,9 +1,9 @@
-//! Laws of [`Reroute`].
+//! Laws of [`LocalRepair`].
 
 use crate::domain::Domain;
+use crate::local_repair::{LocalRepair, NoWay};
 use crate::motion::Instance;
 use crate::random::{Purpose, stream};
-use crate::reroute::{NoWay, Reroute};
 use crate::state::{ComponentSet, State};
 use crate::validity::Validity;
 
@@ -12,21 +12,20 @@ use super::{Broken, MotionClaims, alike, check_instance, ensure, identical};
 
 /// The ends.
 pub const ENDS: &str =
-    "reroute.ends: a way around begins and ends as the motion that it replaces, in the same modes, bit for bit";
+    "local-repair.ends: a way around begins and ends as the motion that it replaces, in the same modes, bit for bit";
 /// Nothing else.
 pub const SAME: &str =
-    "reroute.same: a way around moves the same components, for the same object, and touches nothing more";
+    "local-repair.same: a way around moves the same components, for the same object, and touches nothing more";
 /// What may turn.
-pub const TURNS: &str =
-    "reroute.turns: only what can be run backwards and moves nothing but the robot and what it carries may turn aside";
+pub const TURNS: &str = "local-repair.turns: only what can be run backwards and moves nothing but the robot and what it carries may turn aside";
 /// Pure.
-pub const PURE: &str = "reroute.pure: is_free_to_turn answers the same question in the same way";
+pub const PURE: &str = "local-repair.pure: is_free_to_turn answers the same question in the same way";
 /// Seeded.
-pub const SEEDED: &str = "reroute.seeded: the same generator gives the same way around";
+pub const SEEDED: &str = "local-repair.seeded: the same generator gives the same way around";
 /// Refusals.
-pub const REFUSES: &str = "reroute.refuses: of what may not turn aside there is no way around, with any care";
+pub const REFUSES: &str = "local-repair.refuses: of what may not turn aside there is no way around, with any care";
 /// Free.
-pub const FREE: &str = "reroute.free: a way around is free";
+pub const FREE: &str = "local-repair.free: a way around is free";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[ENDS, SAME, TURNS, PURE, SEEDED, REFUSES, FREE];
@@ -39,23 +38,23 @@ const LOOKS: [f64; 7] = [0.0, 0.125, 0.3, 0.5, 0.77, 0.9, 1.0];
 ///
 /// # Errors
 /// The first law that is [`Broken`].
-pub fn check_reroute<D: Domain>(
+pub fn check_local_repair<D: Domain>(
     m: &D,
-    reroute: &dyn Reroute<D>,
+    local_repair: &dyn LocalRepair<D>,
     validity: &dyn Validity<D>,
     (instance, from): (&Instance<D>, &State<D>),
     seed: u64,
     claims: &MotionClaims<'_, D>,
 ) -> Result<bool, Broken> {
-    let about = || format!("check_reroute(&{instance:?}, &{from:?}, {seed})");
-    let trial = Trial { m, reroute, validity, instance, from };
+    let about = || format!("check_local_repair(&{instance:?}, &{from:?}, {seed})");
+    let trial = Trial { m, local_repair, validity, instance, from };
     let of = |broken: Broken| broken.of(format_args!("way around for {:?}", instance.primitive));
     watched(&about, || trial.run(seed, claims)).map_err(|broken| of(broken).replayed_by(about))
 }
 
 struct Trial<'a, D: Domain> {
     m: &'a D,
-    reroute: &'a dyn Reroute<D>,
+    local_repair: &'a dyn LocalRepair<D>,
     validity: &'a dyn Validity<D>,
     instance: &'a Instance<D>,
     from: &'a State<D>,
@@ -66,7 +65,7 @@ impl<D: Domain> Trial<'_, D> {
         let Self { m, instance, from, .. } = *self;
         let turns = || {
             entering("is_free_to_turn");
-            self.reroute.is_free_to_turn(m, instance)
+            self.local_repair.is_free_to_turn(m, instance)
         };
         let may = turns();
         for _ in 0..3 {
@@ -110,6 +109,6 @@ impl<D: Domain> Trial<'_, D> {
     fn find(&self, seed: u64) -> Result<Result<Instance<D>, NoWay>, Broken> {
         let Self { m, instance, from, validity, .. } = *self;
         let rng = stream(seed, 0, 0, Purpose::Extend);
-        drawing("reroute", rng, |rng| self.reroute.reroute(m, validity, 0, instance, from, rng))
+        drawing("local_repair", rng, |rng| self.local_repair.repair(m, validity, 0, instance, from, rng))
     }
 }

@@ -4,7 +4,7 @@ use crate::manipulator::{Configuration, JointVector};
 
 /// A start and what follows it.
 #[derive(Debug)]
-pub(crate) struct Way<J> {
+pub(crate) struct Configurations<J> {
     start: Configuration<J>,
     rest: Rest<J>,
 }
@@ -17,7 +17,7 @@ enum Rest<J> {
     Both(Box<[Configuration<J>]>),
 }
 
-impl<J: JointVector> Way<J> {
+impl<J: JointVector> Configurations<J> {
     /// From `start` through `rest`.
     pub(crate) fn new(start: Configuration<J>, rest: impl ExactSizeIterator<Item = Configuration<J>> + Clone) -> Self {
         let rest = if rest.clone().all(|q| is_same(&q.base, &start.base)) {
@@ -65,8 +65,8 @@ fn is_same(a: &[f64], b: &[f64]) -> bool {
 mod tests {
     use super::*;
 
-    fn kept(start: Configuration<[f64; 2]>, rest: &[Configuration<[f64; 2]>]) -> Way<[f64; 2]> {
-        let way = Way::new(start, rest.iter().copied());
+    fn kept(start: Configuration<[f64; 2]>, rest: &[Configuration<[f64; 2]>]) -> Configurations<[f64; 2]> {
+        let way = Configurations::new(start, rest.iter().copied());
         let all: Vec<_> = (0..).map_while(|i| way.get(i)).collect();
         let given: Vec<_> = [start].iter().chain(rest).copied().collect();
         // As text, in which the zeros differ.

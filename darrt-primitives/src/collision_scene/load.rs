@@ -3,7 +3,7 @@
 use darrt_geom::body_set::{BodyIndex, BodySet};
 use nalgebra::Isometry3;
 
-use super::{Strict, Surroundings};
+use super::{CollisionScene, Strict};
 use crate::manipulator::{Configuration, Manipulator, world_from_base};
 use crate::mode::Contacts;
 use crate::tabletop::TabletopState;
@@ -16,7 +16,7 @@ pub struct Load {
     poses: Vec<Isometry3<f64>>,
 }
 
-impl Surroundings {
+impl CollisionScene {
     /// Takes the arm of `state` with what it holds as `out`.
     pub fn load<M: Manipulator>(&self, robot: &M, state: &TabletopState<M>, out: &mut Load) {
         let at_origin = Configuration { base: [0.0; 3], arm: state.robot.arm };
@@ -33,7 +33,7 @@ impl Surroundings {
     }
 
     /// The first of `bases` at which something of the room, or an object that is not held, is in the way of the load, with this
-    /// [care](Surroundings::most_care). `like` says where the objects are, and what is held. `None`: at none.
+    /// [care](CollisionScene::most_care). `like` says where the objects are, and what is held. `None`: at none.
     pub fn load_blocked<'a, M: Manipulator>(
         &self,
         load: &Load,

@@ -8,9 +8,9 @@ use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
 use crate::action::place::ON_SURFACE_M;
-use crate::arm_space::{ARM, BASE};
 use crate::goal::UPRIGHT_TOLERANCE_RAD;
 use crate::manipulator::Manipulator;
+use crate::mobile_arm_space::{ARM, BASE};
 use crate::mode::SurfaceId;
 use crate::object_space::OBJECT_TOLERANCE_M;
 use crate::tabletop::{Tabletop, TabletopState};
