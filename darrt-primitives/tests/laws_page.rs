@@ -1,5 +1,5 @@
 //! The page that lists every law of this crate with the faults it catches is up to date. To write it anew:
-//! `DARRT_UPDATE_PAGES=1 cargo test -p darrt-primitives --test laws_page`.
+//! `DARRT_UPDATE_PAGES=1 cargo test -p darrt-primitives --test tests laws_page`.
 #![cfg(feature = "testing")]
 #![allow(clippy::unwrap_used, reason = "a test says no more than that it failed")]
 

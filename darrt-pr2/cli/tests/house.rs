@@ -76,3 +76,26 @@ fn no_decision_compares_the_name_of_a_primitive() {
         }
     }
 }
+
+/// A package whose tests are one program runs only those that its `tests/main.rs` names.
+#[test]
+fn no_file_of_tests_is_forgotten() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap();
+    let mut asked = 0;
+    for (folder, _) in CRATES {
+        let tests = root.join(folder).join("tests");
+        let Ok(main) = std::fs::read_to_string(tests.join("main.rs")) else { continue };
+        let manifest = std::fs::read_to_string(root.join(folder).join("Cargo.toml")).unwrap();
+        for entry in std::fs::read_dir(&tests).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+            if path.extension().is_none_or(|ending| ending != "rs") || name == "main" {
+                continue;
+            }
+            let is_named = main.contains(&format!("mod {name};")) || manifest.contains(&format!("tests/{name}.rs"));
+            assert!(is_named, "{} is in no program of tests", path.display());
+            asked += 1;
+        }
+    }
+    assert!(asked > 30, "the tests are there: {asked}");
+}

@@ -10,7 +10,7 @@ use darrt_primitives::mode::Contacts;
 use darrt_primitives::testing::scene_oracle::SceneOracle;
 use darrt_task::planning::{PlanRequest, strategy};
 
-use crate::support::{file, obstacles, problem};
+use crate::laws::support::{file, obstacles, problem};
 
 /// What is lifted may go away from its target, and what is let go where it was held moves nothing.
 fn is_excused(m: &World, from: &WorldState, to: &PartialState<World>, end: &WorldState) -> bool {

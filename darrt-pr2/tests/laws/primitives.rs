@@ -24,7 +24,7 @@ use darrt_primitives::testing::strategies::{any_mode, engaged, grasping, holding
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
-use crate::support::{PROBLEMS, problem};
+use crate::laws::support::{PROBLEMS, problem};
 
 const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_primitives.txt");
 

@@ -14,7 +14,7 @@ use darrt_task::planning::{PlanRequest, strategy};
 use darrt_task::problem_file::SamplerName;
 use proptest::prelude::*;
 
-use crate::support::{PROBLEMS, file, problem};
+use crate::laws::support::{PROBLEMS, file, problem};
 
 const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_search.txt");
 

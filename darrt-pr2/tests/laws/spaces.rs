@@ -7,7 +7,7 @@ use darrt_primitives::mobile_arm_space::MobileArmSpace;
 use darrt_primitives::testing::strategies::any_mode;
 use proptest::prelude::*;
 
-use crate::support::{PROBLEMS, problem};
+use crate::laws::support::{PROBLEMS, problem};
 
 const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_spaces.txt");
 

@@ -16,7 +16,7 @@ use darrt_task::problem_file::{ProblemFile, ShapeSpec};
 use darrt_task::world;
 use proptest::prelude::*;
 
-use crate::support::{PROBLEMS, file, obstacles, problem, valid_states};
+use crate::laws::support::{PROBLEMS, file, obstacles, problem, valid_states};
 
 const REGRESSIONS: Option<&str> = Some("tests/regressions/laws_validity.txt");
 

@@ -10,7 +10,7 @@ use darrt_task::plan_file::{ContactReason, PlanFile};
 use darrt_task::problem_file::{Goal, ObjectGoal, PrimitiveName, ProblemFile};
 use nalgebra::Vector3;
 
-use crate::builder::{Builder, PLATE, TABLE};
+use crate::verify_plans::builder::{Builder, PLATE, TABLE};
 
 /// The contact of the worked push of Plate1: base, and the right arm at the contact.
 const PUSH_BASE: [f64; 3] = [-0.8, 0.0, 0.0];

@@ -22,7 +22,7 @@ use darrt_task::plan_file::{PlanFile, Pose, Waypoint};
 use darrt_task::problem_file::{Obstacle, ShapeSpec};
 use darrt_task::verify::{Refusal, RefusalKind};
 
-use crate::builder::PLATE;
+use crate::verify_plans::builder::PLATE;
 
 /// Edits the plan and checks what is said; `step` 0 means the plan as a whole.
 fn refused(mut plan: PlanFile, step: u32, kind: RefusalKind, edit: impl FnOnce(&mut PlanFile)) -> Refusal {

@@ -1,7 +1,7 @@
 //! Plan files that are wrong, files of the other kind, and names that would act on a terminal.
 
-use crate::desk::Desk;
-use crate::{GOAL, POSTURE};
+use crate::bad_input::desk::Desk;
+use crate::bad_input::{GOAL, POSTURE};
 
 /// A goal that holds at the start: the plan has no steps.
 const THERE: &str = "on = \"central table\"\nat = [-0.20, 0.05]";

@@ -11,8 +11,8 @@ use darrt_task::robot::{RobotFacts, TaskRobot as _};
 use darrt_task::verify::{RefusalKind, VerifyOptions, verify_clock};
 
 use super::refused;
-use crate::builder::PLATE;
-use crate::plans;
+use crate::verify_plans::builder::PLATE;
+use crate::verify_plans::plans;
 
 /// Makes a good plan a wrong one.
 type Edit = fn(&mut PlanFile);

@@ -5,8 +5,8 @@ use darrt_task::plan_file::{AllowedContact, ContactReason, Pose, Waypoint};
 use darrt_task::verify::RefusalKind;
 
 use super::{about, block, from_here_on, joint, refused, waypoint};
-use crate::builder::{PLATE, TABLE, finger_links};
-use crate::plans;
+use crate::verify_plans::builder::{PLATE, TABLE, finger_links};
+use crate::verify_plans::plans;
 
 #[test]
 fn obstacles_in_the_way_are_met() {

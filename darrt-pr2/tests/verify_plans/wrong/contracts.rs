@@ -6,7 +6,7 @@ use darrt_task::plan_file::PlanFile;
 use darrt_task::problem_file::PrimitiveName;
 use darrt_task::verify::RefusalKind;
 
-use crate::plans;
+use crate::verify_plans::plans;
 
 /// The plan with another contract for one of its primitives, and as what it is refused.
 fn lies(mut plan: PlanFile, primitive: &PrimitiveName, change: impl FnOnce(&mut Contract)) -> RefusalKind {

@@ -6,7 +6,7 @@ use darrt_task::problem_file::{GoalState, Region, Symmetry};
 use darrt_task::verify::RefusalKind;
 
 use super::{about, block, refused};
-use crate::plans;
+use crate::verify_plans::plans;
 
 #[test]
 fn the_start_is_the_problems() {

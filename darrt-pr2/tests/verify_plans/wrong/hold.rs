@@ -6,7 +6,7 @@ use darrt_task::problem_file::Object;
 use darrt_task::verify::RefusalKind;
 
 use super::refused;
-use crate::plans::{self, PICK_PLATE};
+use crate::verify_plans::plans::{self, PICK_PLATE};
 
 /// What is said about the grasp of the carried plate after an edit of the plate.
 fn said(edit: impl FnOnce(&mut Object)) -> String {

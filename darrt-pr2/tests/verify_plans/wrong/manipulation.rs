@@ -7,8 +7,8 @@ use darrt_task::verify::RefusalKind;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use super::{about, from_here_on, plate, refused, waypoint};
-use crate::builder::{PLATE, TABLE};
-use crate::plans;
+use crate::verify_plans::builder::{PLATE, TABLE};
+use crate::verify_plans::plans;
 
 #[test]
 fn pushes_go_as_pushes_go() {

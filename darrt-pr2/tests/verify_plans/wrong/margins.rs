@@ -6,8 +6,8 @@ use darrt_task::problem_file::{Obstacle, Region, Surface};
 use darrt_task::verify::{RefusalKind, WarningKind};
 
 use super::{about, block, refused};
-use crate::builder::{PLATE, TABLE};
-use crate::plans;
+use crate::verify_plans::builder::{PLATE, TABLE};
+use crate::verify_plans::plans;
 
 /// Radius of the plate, metres.
 const RADIUS: f64 = 0.14;

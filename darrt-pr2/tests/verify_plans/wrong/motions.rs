@@ -9,7 +9,7 @@ use darrt_task::verify::RefusalKind;
 use nalgebra::Isometry3;
 
 use super::{from_here_on, joint, plate, refused, waypoint};
-use crate::plans;
+use crate::verify_plans::plans;
 
 #[test]
 fn objects_do_not_move_by_themselves() {
