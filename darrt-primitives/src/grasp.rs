@@ -171,7 +171,7 @@ impl Default for Grip {
     /// Open gap 0.05, fingertips 0.018 ahead of the tool, approach 0.02 to 0.10, pads 0.036 by 0.0226: a common parallel
     /// gripper.
     fn default() -> Self {
-        let approach = LengthRange::of_grasps();
+        let approach = LengthRange::constant(0.02, 0.10);
         Self { open_gap: 0.05, tip_ahead: 0.018, approach, pad_length: 0.036, pad_width: 0.0226 }
     }
 }

@@ -26,9 +26,9 @@ impl LengthRange {
         Ok(Self { least_m: within("least length", least_m, 0.0, wanted_m)?, wanted_m })
     }
 
-    /// The way of a hand to a grasp unless something else is asked for: 0.02 to 0.10 m.
-    pub(crate) const fn of_grasps() -> Self {
-        Self { least_m: 0.02, wanted_m: 0.10 }
+    /// Of two lengths of the program itself, the least first.
+    pub(crate) const fn constant(least_m: f64, wanted_m: f64) -> Self {
+        Self { least_m, wanted_m }
     }
 
     /// The shortest that will do, metres.

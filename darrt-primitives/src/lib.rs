@@ -10,12 +10,12 @@
 //! | how can an object be held? | [`grasp`] |
 //! | how far may what is held lean? | [`tilt`] |
 //! | how near to an edge may an object be left? | [`edge_margin`] |
-//! | how does a wish become motions? | [`action`], [`arm_motion`] |
+//! | how does a target become motions? | [`action`], [`arm_motion`] |
 //! | how long are straight lines of the hand? | [`length_range`] |
 //! | who may touch whom, and what is too near? | [`collision_scene`] |
 //! | what is in the way, and is there a way around? | [`validity`], [`local_repair`], [`base_path`] |
 //! | how long does a plan take? | [`execution_time`] |
-//! | what is asked for, and what is a goal? | [`wish`], [`goal`] |
+//! | what is asked for, and what is a goal? | [`target_query`], [`goal`] |
 //! | is my robot right? | [`laws`], and `testing` (feature `testing`) |
 //!
 //! Nothing here names a robot.

@@ -103,6 +103,80 @@ pub trait Hand: Send + Sync {
 /// - No point of the robot moves farther than [`Manipulator::travel_m`] while base and arm move on the straight line
 ///   between two configurations, and no point of a link farther than [`Manipulator::link_travel_m`] says of it.
 /// - `link_poses` follows `world_from_tool`: hand links are rigid to the tool, finger links for a constant gap.
+///
+/// # Example
+/// A crane on wheels: three slides, and a hand that always points down.
+/// ```
+/// use darrt_primitives::kinematics::JointLimit;
+/// use darrt_primitives::manipulator::{Configuration, Hand, LinkGroup, Manipulator, RobotLink, world_from_base};
+/// # use darrt_geom::{body::Body, shape::Shape};
+/// # use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+/// # use rand::Rng;
+///
+/// struct Jaw;
+/// impl Hand for Jaw {
+///     fn max_gap_m(&self) -> f64 { 0.1 }
+///     fn tip_beyond_tool_m(&self, _gap_m: f64) -> f64 { 0.03 }
+///     fn tip_half_width_m(&self) -> f64 { 0.01 }
+/// }
+///
+/// struct Crane { limits: [JointLimit; 3], links: Vec<RobotLink> }
+/// fn base_from_tool(arm: [f64; 3]) -> Isometry3<f64> {
+///     let down = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::FRAC_PI_2);
+///     Isometry3::from_parts(Translation3::from(arm), down)
+/// }
+/// impl Crane {
+///     fn solve(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> Option<[f64; 3]> {
+///         let wanted = world_from_base(base).inverse() * tool;
+///         let arm: [f64; 3] = wanted.translation.vector.into();
+///         let points_down = wanted.rotation.angle_to(&base_from_tool(arm).rotation) < 1e-9;
+///         (points_down && arm.iter().zip(&self.limits).all(|(x, limit)| limit.contains(*x))).then_some(arm)
+///     }
+/// }
+/// impl Manipulator for Crane {
+///     type Joints = [f64; 3];
+///     fn hand(&self) -> &dyn Hand { &Jaw }
+///     fn limits(&self) -> &[JointLimit] { &self.limits }
+///     fn joint_weights_m(&self) -> &[f64] { &[1.0; 3] }
+///     fn links(&self) -> &[RobotLink] { &self.links }
+///     fn self_pairs(&self) -> &[(usize, usize)] { &[] }
+///     fn world_from_tool(&self, q: &Configuration<[f64; 3]>) -> Isometry3<f64> {
+///         world_from_base(&q.base) * base_from_tool(q.arm)
+///     }
+///     fn inverse(&self, base: &[f64; 3], tool: &Isometry3<f64>, _: &mut dyn Rng) -> Option<[f64; 3]> {
+///         self.solve(base, tool)
+///     }
+///     fn inverse_near(&self, base: &[f64; 3], tool: &Isometry3<f64>, _near: &[f64; 3]) -> Option<[f64; 3]> {
+///         self.solve(base, tool)
+///     }
+///     fn base_for(&self, tool: &Isometry3<f64>, _: &mut dyn Rng) -> [f64; 3] {
+///         let ahead = tool * Vector3::z(); // the x axis of the base
+///         [tool.translation.x, tool.translation.y, ahead.y.atan2(ahead.x)]
+///     }
+///     fn may_reach(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> bool { self.solve(base, tool).is_some() }
+///     fn link_poses(&self, q: &Configuration<[f64; 3]>, gap_m: f64, out: &mut [Isometry3<f64>]) {
+///         let finger = |side: f64| self.world_from_tool(q) * Translation3::new(0.0, side * (0.5 * gap_m + 0.01), 0.0);
+///         out.copy_from_slice(&[finger(1.0), finger(-1.0)]);
+///     }
+///     fn travel_m(&self, a: &Configuration<[f64; 3]>, b: &Configuration<[f64; 3]>, held_reach_m: f64) -> f64 {
+///         let along = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+///         let farthest_m = 1.5 + held_reach_m; // of any point from the axis of the base: limits and fingers
+///         let turn_rad = (b.base[2] - a.base[2] + 9.42477796076938).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
+///         along(&a.base[..2], &b.base[..2]) + turn_rad.abs() * farthest_m + along(&a.arm, &b.arm)
+///     }
+/// }
+///
+/// let finger = |name: &str| -> Result<RobotLink, darrt_geom::GeomError> {
+///     let body = Body::single(name, Shape::cuboid(Vector3::new(0.03, 0.01, 0.01))?)?;
+///     Ok(RobotLink { body, group: LinkGroup::Finger })
+/// };
+/// let links = vec![finger("left finger")?, finger("right finger")?];
+/// let crane = Crane { limits: [JointLimit::new(0.0, 1.0), JointLimit::new(-0.5, 0.5), JointLimit::new(0.1, 1.5)], links };
+/// let [a, b] = [[0.2, 0.1, 0.8], [0.6, -0.3, 1.2]].map(|arm| Configuration { base: [0.0; 3], arm });
+/// # use darrt_primitives::laws::{ManipulatorClaims, check_manipulator};
+/// check_manipulator(&crane, [&a, &b], [0.02, 0.08], 0, &ManipulatorClaims::default())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Manipulator: Send + Sync + 'static {
     /// The arm's joint vector.
     type Joints: JointVector;

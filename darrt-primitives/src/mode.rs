@@ -149,7 +149,8 @@ impl Mode {
     }
 }
 
-/// Why two bodies may touch during an instance.
+/// What the fingers do to an object that they may touch: they move it, hold it, or leave it. A contact of any other name is one
+/// of these, for there is nothing else that a law could ask of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TouchReason {
     /// The fingers push it.
@@ -158,8 +159,6 @@ pub enum TouchReason {
     Grasp,
     /// The fingers slide off it.
     Retreat,
-    /// It is lifted from, or set down on, the surface.
-    Support,
 }
 
 /// What an instance may touch besides what the mode itself allows (a resting object touches its support, a held one

@@ -19,12 +19,14 @@ use crate::edge_margin::Brink;
 use crate::grasp::hold::{Hold, Load, NoHold, hold};
 use crate::grasp::{Grasp, GraspFamily};
 use crate::length_range::LengthRange;
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, Hand, Manipulator};
 use crate::mobile_arm_space::MobileArmSpace;
 use crate::mode::{Contacts, Held, Mode, SurfaceId};
 use crate::object_space::ObjectSpace;
 use crate::primitive::STANDARD;
 use crate::push::edge_stop::{EdgeRule, RimReach};
+
+pub mod builder;
 
 /// A rigid object that can be manipulated, besides its configuration space.
 pub struct Movable {
@@ -174,6 +176,45 @@ pub struct ActionSettings<J> {
     /// Gap of the hand where nothing else asks for one, metres.
     pub travel_gap_m: f64,
 }
+
+impl<J> ActionSettings<J> {
+    /// What serves at ordinary tables: the values that problem files have by default, within what `hand` can open. All
+    /// primitives may drive the base, and there are no postures to travel through.
+    pub fn for_hand(hand: &dyn Hand) -> Self {
+        Self {
+            push: PushSettings {
+                gap_m: 0.088_f64.min(hand.max_gap_m()),
+                fingertip_clearance_m: 0.005,
+                leans_rad: [0.0_f64, 35.0, 60.0].map(f64::to_radians).to_vec(),
+                standoff_m: LengthRange::constant(0.03, 0.05),
+                approach_m: LengthRange::constant(0.02, 0.10),
+                position_error_m: 0.01,
+                max_turn_rad: 60.0_f64.to_radians(),
+                edge_rule: EdgeRule::NearestEdgePoint,
+                edge_distance_m: [0.03, 0.08],
+            },
+            place: PlaceSettings {
+                approach_directions: vec![-Vector3::z()],
+                approach_m: LengthRange::constant(0.02, 0.10),
+                retreat_m: LengthRange::constant(0.03, 0.10),
+                release_opening_m: RELEASE_OPENING_M,
+            },
+            safety: SafetySettings::default(),
+            retreat_m: LengthRange::constant(0.03, 0.10),
+            line_step_m: 0.05,
+            drives: [true, true],
+            base_tries: 24,
+            grasp_tries: 4,
+            postures: Vec::new(),
+            travel_gap_m: TRAVEL_GAP_M.min(hand.max_gap_m()),
+        }
+    }
+}
+
+/// Gap of the empty hand where no action asks for another, metres.
+const TRAVEL_GAP_M: f64 = 0.08;
+/// How much the fingers open to let go of an object, metres: at a table's corner there is no room for more.
+const RELEASE_OPENING_M: f64 = 0.01;
 
 /// What a metre of the empty hand counts in the tour distances against a metre of an object. A hand that is near an
 /// object is no better placed than one that is far: it has to back out first. With weight 1 the nearest node is always

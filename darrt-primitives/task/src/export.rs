@@ -164,7 +164,7 @@ impl Exporter {
             let reason = match reason {
                 TouchReason::Push => ContactReason::Push,
                 TouchReason::Retreat => ContactReason::Retreat,
-                TouchReason::Grasp | TouchReason::Support => ContactReason::Grasp,
+                TouchReason::Grasp => ContactReason::Grasp,
             };
             out.extend(AllowedContact::fingers(&self.finger_links, &object, reason));
         }

@@ -28,12 +28,8 @@ use crate::registry::Registry;
 use crate::robot::{RobotError, TaskRobot};
 use crate::supports::Supports;
 
-/// Gap of the empty gripper where no action asks for another, metres.
-const TRAVEL_GAP: f64 = 0.08;
 /// Free distance that a rim grasp keeps between fingertips and edge, metres.
 const RIM_CLEARANCE: f64 = 0.01;
-/// How much the fingers open to let go of an object, metres: at a table's corner there is no room for more.
-const RELEASE_OPENING: f64 = 0.01;
 /// Share of object samples that stand on a surface.
 const SURFACE_SHARE: f64 = 0.7;
 
@@ -112,17 +108,14 @@ fn movable(
     (geometry, supports): (&Geometry, &Supports),
     hand: &dyn Hand,
 ) -> Result<(ObjectSpace, Movable), PlanningError> {
-    let reach_m = solid.body.parts.iter().fold(0.0_f64, |most, part| {
-        let (centre, radius) = part.shape.bounding_sphere();
-        most.max((part.body_from_shape * centre).coords.norm() + radius)
-    });
+    let plain = Movable::of_body(solid.body.clone());
     let radius = object.shape.round_radius();
     let bounds = &problem.bounds;
     let space = ObjectSpace::new(ObjectSpaceParts {
         lower: [bounds.object_x[0], bounds.object_y[0], bounds.object_z[0]],
         upper: [bounds.object_x[1], bounds.object_y[1], bounds.object_z[1]],
         is_round: object.symmetry() == Symmetry::Z,
-        metres_per_rad: radius.unwrap_or(reach_m),
+        metres_per_rad: radius.unwrap_or(plain.reach_m),
         half_height_m: solid.depth_below_origin,
         surfaces: supports.surfaces_of(index).cloned().collect(),
         surface_share: SURFACE_SHARE,
@@ -131,10 +124,8 @@ fn movable(
     let rim = RimReach { insertion: object.rim.insertion_m, clearance: RIM_CLEARANCE, ..RimReach::default() };
     let named = |flaw| PlanningError::Grasp { object: object.name.clone(), index, flaw };
     let movable = Movable {
-        body: solid.body.clone(),
         round_radius_m: radius,
         half_height_m: solid.depth_below_origin,
-        reach_m,
         is_pushable: object.pushable(),
         surfaces: supports.of_object(index).into(),
         grasps: families(object, hand).map_err(named)?,
@@ -144,6 +135,7 @@ fn movable(
         friction: ObjectFriction { table: object.friction.table, fingers: object.friction.fingers },
         max_tilt_rad: object.max_tilt_deg().to_radians(),
         brinks: crate::goal_edges::brinks(problem, index, solid.depth_below_origin, geometry, supports),
+        ..plain
     };
     Ok((space, movable))
 }
@@ -158,6 +150,7 @@ fn settings<M: TaskRobot>(
         let unknown = |known| RobotError::unknown_posture(format!("transit.postures[{index}]"), name, known);
         robot.posture(name).ok_or_else(|| M::posture_names(&problem.robot).map_or_else(|error| error, unknown))
     });
+    let usual = ActionSettings::for_hand(robot.hand());
     Ok(ActionSettings {
         push: PushSettings {
             gap_m: push.gap_m.min(robot.hand().max_gap_m()),
@@ -182,16 +175,13 @@ fn settings<M: TaskRobot>(
                 .collect(),
             approach_m: problem.place.approach_m.planned()?,
             retreat_m: problem.place.retreat_m.planned()?,
-            release_opening_m: RELEASE_OPENING,
+            release_opening_m: usual.place.release_opening_m,
         },
         safety: problem.safety.settings(),
         retreat_m: push.retreat_m.planned()?,
-        line_step_m: 0.05,
         drives: [allowed.contains(&BASE_TRANSIT), allowed.contains(&BASE_RIGID_TRANSFER)],
-        base_tries: 24,
-        grasp_tries: 4,
         postures: postures.collect::<Result<_, RobotError>>()?,
-        travel_gap_m: TRAVEL_GAP.min(robot.hand().max_gap_m()),
+        ..usual
     })
 }
 

@@ -41,7 +41,7 @@ impl<M: Manipulator> Trial<'_, M> {
             let fits = match reason {
                 TouchReason::Push => !is_held(id) && self.from.object(id) != self.end.object(id),
                 TouchReason::Retreat => leaves,
-                TouchReason::Grasp | TouchReason::Support => !leaves,
+                TouchReason::Grasp => !leaves,
             };
             ensure(EXEMPT, fits, text, "a reason that fits what happens")?;
         }
