@@ -140,6 +140,9 @@ pub(super) fn obj(shown: &str, bytes: &[u8]) -> Result<Soup, GeomError> {
         })?;
         whole.clear();
     }
+    if !whole.trim().is_empty() {
+        return Err(malformed("the last line ends in a backslash, and no line follows it".to_owned()));
+    }
     let options =
         tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
     let no_materials = |_: &Path| Err(tobj::LoadError::MaterialParseError);

@@ -53,6 +53,7 @@ fn what_an_obj_file_says_is_read_or_refused() {
         ("v 0,5 0 0\nf 1 2 3\n", "line 4: a vertex has three numbers"),
         ("f 1 2\n", "line 4: a face has at least three corners"),
         ("f 1 2 3\nV 0 0 1\n", "line 5: this is no line of the format"),
+        ("f 1 2 3\nf 1 2 3 \\\n", "the last line ends in a backslash"),
         ("f 1 2 3\nsurf 0 1 0 1 1 2 3\n", "curved surfaces are not read"),
     ] {
         let message = obj("bad.obj", format!("{corners}{more}").as_bytes()).unwrap_err().to_string();

@@ -4,6 +4,8 @@
 use std::io::Read as _;
 use std::path::Path;
 
+use crate::text::shell_word;
+
 /// As much of a file as is looked at.
 const HEAD: u64 = 4096;
 
@@ -46,6 +48,7 @@ impl FileKind {
 
     /// Why a file of this kind is no problem file; `None` if it is one.
     pub fn instead_of_problem(self, file: &str) -> Option<String> {
+        let file = shell_word(file);
         match self {
             Self::Problem => None,
             Self::JsonProblem => Some("is a problem as JSON; problem files are TOML".to_owned()),
@@ -58,6 +61,7 @@ impl FileKind {
 
     /// Why a file of this kind is no plan file; `None` if it is one.
     pub fn instead_of_plan(self, file: &str) -> Option<String> {
+        let file = shell_word(file);
         match self {
             Self::Plan => None,
             Self::JsonProblem => Some("is a problem as JSON, not a plan".to_owned()),

@@ -26,6 +26,12 @@ pub fn acts(c: char) -> bool {
     c.is_control() || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
+/// The text as one word of a command that is proposed to the user, as a POSIX shell reads it: in quotes where that needs them.
+pub fn shell_word(text: &str) -> Cow<'_, str> {
+    // A name with a zero byte is that of no file.
+    shlex::try_quote(text).unwrap_or(Cow::Borrowed(text))
+}
+
 fn escaped(text: &str, is_bad: impl Fn(char) -> bool) -> Cow<'_, str> {
     if !text.contains(&is_bad) {
         return Cow::Borrowed(text);
@@ -44,6 +50,15 @@ mod tests {
     #[test]
     fn one_is_singular_and_all_else_plural() {
         assert_eq!([0, 1, 2].map(|n| counted(n, "step")), ["0 steps", "1 step", "2 steps"]);
+    }
+
+    #[test]
+    fn what_a_shell_would_split_or_read_otherwise_is_in_quotes() {
+        for (text, word) in [("a/b-1.toml", "a/b-1.toml"), ("my plan.json", "'my plan.json'"), ("", "''")] {
+            assert_eq!(shell_word(text), word);
+        }
+        let odd = "it's $HOME; *";
+        assert_eq!(shlex::split(&shell_word(odd)).unwrap(), [odd]);
     }
 
     #[test]

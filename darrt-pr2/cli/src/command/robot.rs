@@ -8,6 +8,7 @@ use darrt_task::picture::{Extent, Format, Story};
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
 use darrt_task::robot_file::Source;
+use darrt_task::text::shell_word;
 
 use crate::args::{RobotCheckOptions, RobotCommand, RobotListOptions, RobotNewOptions, RobotOptions};
 use crate::drawing;
@@ -121,7 +122,7 @@ fn new(options: &RobotNewOptions, output: &mut Output) -> Result<Exit, Failure> 
     output.print(&format!(
         "robot:    {}\nLook at the lines with a question mark, then: darrt robot check {}",
         path.display(),
-        path.display()
+        shell_word(&path.to_string_lossy())
     ))?;
     Ok(Exit::Solved)
 }
