@@ -13,6 +13,7 @@
 //! | what is the silhouette of a solid? | `outline` |
 //! | how are the room, the robot, the ways drawn? | `room`, `figure`, `journey` |
 //! | what is on the page? | `page`, `overview`, `filmstrip` |
+//! | how does a plan move in one SVG file? | `moving` |
 //! | how does it become a PNG file? | [`raster`] |
 
 mod abridged;
@@ -23,6 +24,7 @@ mod filmstrip;
 pub mod ink;
 mod journey;
 pub mod model;
+mod moving;
 mod outline;
 mod overview;
 mod page;
@@ -37,9 +39,11 @@ mod view;
 use std::path::Path;
 
 pub use act::Act;
+pub use moving::animate;
 pub use story::{Snapshot, Story, StoryStep};
 pub use travel::Travel;
 
+use crate::clock::ClockError;
 use crate::plan_file::joints::JointFlaw;
 use crate::problem_file::ProblemFileError;
 use crate::robot::RobotError;
@@ -54,6 +58,9 @@ pub enum PictureError {
     /// The robot cannot be built.
     #[error(transparent)]
     Robot(#[from] RobotError),
+    /// The plan has no clock.
+    #[error(transparent)]
+    Clock(#[from] ClockError),
     /// A plan refers to something that is not there.
     #[error("`{place}` lacks the {what} `{name}`")]
     Missing {

@@ -18,6 +18,9 @@ pub struct ShowOptions {
     /// Leave out the small view of every step
     #[arg(long)]
     pub overview: bool,
+    /// Of a plan: an .svg picture that moves, from above and from the right
+    #[arg(long, conflicts_with = "overview")]
+    pub moving: bool,
     /// Of a recorded search, show this attempt only
     #[arg(long, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
     pub attempt: Option<u64>,

@@ -7,7 +7,7 @@ use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
 use crate::{browser, drawing, steps};
 use darrt_task::file_kind::{self, FileKind};
-use darrt_task::picture::{Extent, Format, Story};
+use darrt_task::picture::{self, Extent, Format, Story};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
@@ -32,12 +32,24 @@ pub(crate) fn run(program: &dyn Program, options: &ShowOptions, output: &mut Out
         return Err(Failure::input(format!("{}: {} is for recorded searches", options.source, option.0)));
     }
     let Source { story, plan, robot } = read(program, &options.source)?;
-    let default = || PathBuf::from(format!("{}.html", output::file_stem(&story.problem.name)));
+    let default = || {
+        let ending = if options.moving { "svg" } else { "html" };
+        PathBuf::from(format!("{}.{ending}", output::file_stem(&story.problem.name)))
+    };
     let path = options.output.clone().unwrap_or_else(default);
     let format = Format::of_path(&path)?;
     let place = output::writable(&path)?;
     let extent = if options.overview { Extent::Overview } else { Extent::Whole };
-    output::write_file(&place, &drawing::file(&story, plan.as_ref(), &robot, format, extent)?)?;
+    let bytes = match (&plan, options.moving) {
+        (_, false) => drawing::file(&story, plan.as_ref(), &robot, format, extent)?,
+        (Some(plan), true) if format == Format::Svg => picture::animate(plan, &robot)?.into_bytes(),
+        (Some(_), true) => {
+            let text = format!("{}: --moving makes an .svg file; an .html page moves by itself", path.display());
+            return Err(Failure::input(text));
+        }
+        (None, true) => return Err(Failure::input(format!("{}: is no plan, nothing moves in it", options.source))),
+    };
+    output::write_file(&place, bytes)?;
     if !story.steps.is_empty() {
         output.print(&steps::table(&story))?;
     }
