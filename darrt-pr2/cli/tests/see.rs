@@ -317,3 +317,47 @@ fn a_browser_shows_the_causes_without_a_complaint() {
     assert!(causes.contains("aria-pressed=\"false\"") && causes.contains("`mug`"), "{causes}");
     assert!(list("heat").contains("post") && list("grown").starts_with("iteration 600 of 600"));
 }
+
+#[test]
+fn a_plan_moves_in_one_svg_file_with_one_frame_at_a_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let run = darrt(folder, &["plan", "bowl", "--no-improve", "--no-picture", "-q", "-o", "bowl.json"]);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let run = darrt(folder, &["show", "bowl.json", "--moving"]);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let picture = std::fs::read_to_string(folder.join("bowl.svg")).unwrap();
+    assert!(!picture.contains("<script") && !picture.contains("href"), "it needs nothing else");
+    let document = roxmltree::Document::parse(&picture).unwrap();
+    let frames: Vec<_> = document.descendants().filter(|node| node.attribute("style").is_some()).collect();
+    assert!((20..=65).contains(&frames.len()), "{}", frames.len());
+    // The frames follow each other without gap: each begins a tenth of a second behind the one before.
+    let delay = |node: &roxmltree::Node<'_, '_>| {
+        let style = node.attribute("style").unwrap();
+        style.strip_prefix("animation-delay:").unwrap().strip_suffix('s').unwrap().parse::<f64>().unwrap()
+    };
+    assert!(frames.windows(2).all(|pair| (delay(&pair[1]) - delay(&pair[0]) - 0.1).abs() < 1e-6));
+    // The robot stands elsewhere in nearly all of them, and the names of the steps are those of the plan, in its order.
+    let shapes = |node: &roxmltree::Node<'_, '_>| {
+        let polygons = node.descendants().filter(|node| node.has_tag_name("polygon"));
+        polygons.map(|polygon| polygon.attribute("points").unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    let still = frames.windows(2).filter(|pair| shapes(&pair[0]) == shapes(&pair[1])).count();
+    assert!(still * 4 < frames.len(), "{still} of {} frames are as the one before", frames.len());
+    let plan: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("bowl.json")).unwrap()).unwrap();
+    for frame in &frames {
+        let said = frame.descendants().find(|node| node.has_tag_name("text")).unwrap().text().unwrap();
+        let (number, name) = said.split_once(". ").unwrap();
+        let step = &plan["steps"][number.parse::<usize>().unwrap() - 1];
+        assert!(name.starts_with(step["primitive"].as_str().unwrap()), "{said}");
+    }
+    for (arguments, why) in [
+        (["show", "bowl.json", "--moving", "-o", "b.png"].as_slice(), "--moving makes an .svg file"),
+        (&["show", "bowl", "--moving"], "bowl: is no plan"),
+    ] {
+        let run = darrt(folder, arguments);
+        assert_eq!(run.status.code(), Some(2));
+        assert!(text(&run.stderr).contains(why), "{}", text(&run.stderr));
+    }
+}

@@ -25,7 +25,7 @@ use crate::robot::RobotFacts;
 /// Seconds of the plan between two frames, unless that makes too many.
 const EVERY_S: f64 = 0.5;
 /// Frames at most, besides those at which the picture rests at its end.
-const MOST_FRAMES: usize = 96;
+const MOST_FRAMES: usize = 64;
 /// Seconds that a frame is shown.
 const SHOWN_S: f64 = 0.1;
 /// Frames for which the end is shown.
