@@ -6,18 +6,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-fn darrt(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_darrt")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-/// Runs, expects this exit code, returns what was printed and what was complained about.
-fn run(folder: &Path, arguments: &[&str], expected: i32) -> (String, String) {
-    let output = darrt(folder, arguments);
-    let [printed, complaint] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-    assert_eq!(output.status.code(), Some(expected), "{arguments:?}: {complaint}");
-    assert!(!complaint.contains("panicked"), "{complaint}");
-    (printed, complaint)
-}
+use crate::program::run;
 
 /// Two problems of other names: Plate1 with a goal that holds already, so that every run is short.
 fn easy_problems(folder: &Path) {

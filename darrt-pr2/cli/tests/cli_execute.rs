@@ -5,15 +5,7 @@
 use std::path::Path;
 use std::process::Command;
 
-/// Runs, expects this exit code, returns what was printed and what was complained about.
-fn run(folder: &Path, arguments: &[&str], expected: i32) -> (String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_darrt")).current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    let (printed, complaint) = (text(&output.stdout), text(&output.stderr));
-    assert_eq!(output.status.code(), Some(expected), "{arguments:?}: {printed}{complaint}");
-    assert!(!complaint.contains("panicked"), "{complaint}");
-    (printed, complaint)
-}
+use crate::program::run;
 
 #[test]
 fn a_plan_is_carried_out_and_the_same_whatever_the_number_of_threads() {

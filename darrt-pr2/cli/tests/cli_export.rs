@@ -9,14 +9,7 @@ use std::process::Command;
 use serde_json::Value;
 use yaml_rust2::YamlLoader;
 
-fn run(folder: &Path, arguments: &[&str], expected: i32) -> (String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_darrt")).current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    let (printed, complaint) = (text(&output.stdout), text(&output.stderr));
-    assert_eq!(output.status.code(), Some(expected), "{arguments:?}: {complaint}");
-    assert!(!complaint.contains("panicked"), "{complaint}");
-    (printed, complaint)
-}
+use crate::program::run;
 
 fn read(folder: &Path, name: &str) -> String {
     std::fs::read_to_string(folder.join(name)).unwrap()

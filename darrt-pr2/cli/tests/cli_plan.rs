@@ -5,22 +5,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-fn darrt(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_darrt")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
-
-/// Runs, expects this exit code, returns what was printed and what was complained about.
-fn run(folder: &Path, arguments: &[&str], expected: i32) -> (String, String) {
-    let output = darrt(folder, arguments);
-    let (printed, complaint) = (text(&output.stdout), text(&output.stderr));
-    assert_eq!(output.status.code(), Some(expected), "{arguments:?}: {complaint}");
-    assert!(!complaint.contains("panicked"), "{complaint}");
-    (printed, complaint)
-}
+use crate::program::{run, text};
 
 /// Plate1 with a goal that holds already: solved before the first iteration.
 fn solved_problem(folder: &Path) {

@@ -10,9 +10,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-fn darrt(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_darrt")).args(arguments).current_dir(folder).output().unwrap()
-}
+use crate::program::darrt;
 
 fn text(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))

@@ -5,9 +5,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-fn darrt(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_darrt")).current_dir(folder).args(arguments).output().unwrap()
-}
+use crate::program::darrt;
 
 fn code(output: &Output) -> i32 {
     output.status.code().unwrap()

@@ -9,6 +9,7 @@ mod cli_robot;
 mod cli_usage;
 mod house;
 mod no_plan;
+mod program;
 mod see;
 mod verdicts;
 mod viewer;

@@ -9,6 +9,8 @@ use darrt_task::diagnosis::explain::Explanation;
 use darrt_task::diagnosis::relax::Relaxation;
 use darrt_task::diagnosis::{Diagnosis, Outcome};
 
+use crate::program::{darrt, text};
+
 /// A mug on a table that shall go to a shelf; where the shelf stands, and what else there is.
 fn problem(shelf_z: f64, more: &str) -> String {
     format!(
@@ -20,14 +22,6 @@ fn problem(shelf_z: f64, more: &str) -> String {
          \"shelf\"\n[[object]]\nname = \"mug\"\nshape = {{ cylinder = {{ radius = 0.035, height = 0.1 }} }}\non = \
          \"table\"\nat = [-0.2, 0.2]\ngrasps = [\"side\"]\n[[goal.object]]\nobject = \"mug\"\non = \"shelf\"\nat = [-0.1, 1.9]\n"
     )
-}
-
-fn darrt(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_darrt")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
 }
 
 #[test]

@@ -13,6 +13,8 @@ use std::sync::OnceLock;
 use darrt_task::recording::Recording;
 use darrt_task::viewer::data::ViewerData;
 
+use crate::program::{darrt, text};
+
 /// A mug in a cage of eight posts, and a jar that can be put where it shall be.
 fn caged() -> String {
     let post = |i: u32| {
@@ -39,14 +41,6 @@ fn caged() -> String {
         goal("mug", 0.4),
         goal("jar", -0.4)
     )
-}
-
-fn darrt(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_darrt")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
 }
 
 /// A folder with what a run without a plan leaves behind, made once.

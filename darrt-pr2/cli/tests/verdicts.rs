@@ -8,6 +8,8 @@ use std::process::{Command, Output};
 
 use darrt_pr2::model::URDF;
 
+use crate::program::darrt;
+
 const SOLVED: i32 = 0;
 const NOT_SOLVED: i32 = 1;
 const BAD_INPUT: i32 = 2;
@@ -85,7 +87,7 @@ impl Desk {
     }
 
     fn run(&self, arguments: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_darrt")).current_dir(self.path()).args(arguments).output().unwrap()
+        darrt(self.path(), arguments)
     }
 }
 

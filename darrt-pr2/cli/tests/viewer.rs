@@ -17,10 +17,7 @@ use darrt_task::viewer::data::{JointKindData, PoseData, StepData, ViewerData};
 use darrt_task::viewer::{self, RobotModel};
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 
-fn darrt(folder: &Path, arguments: &[&str]) {
-    let output = Command::new(env!("CARGO_BIN_EXE_darrt")).current_dir(folder).args(arguments).output().unwrap();
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-}
+use crate::program::run;
 
 /// A folder with a plan of Plate3 and its page, made once.
 fn plate3() -> &'static Path {
@@ -28,7 +25,7 @@ fn plate3() -> &'static Path {
     FOLDER
         .get_or_init(|| {
             let folder = tempfile::tempdir().unwrap();
-            darrt(folder.path(), &["plan", "plate3", "--quiet"]);
+            run(folder.path(), &["plan", "plate3", "--quiet"], 0);
             folder
         })
         .path()
@@ -226,7 +223,7 @@ fn parts_of_glb(bytes: &[u8]) -> (serde_json::Value, &[u8]) {
 
 #[test]
 fn a_gltf_file_has_a_node_for_everything_and_an_animation() {
-    darrt(plate3(), &["show", "plate3.plan.json", "-o", "plate3.glb"]);
+    run(plate3(), &["show", "plate3.plan.json", "-o", "plate3.glb"], 0);
     let bytes = std::fs::read(plate3().join("plate3.glb")).unwrap();
     let (json, binary) = parts_of_glb(&bytes);
     let nodes = json["nodes"].as_array().unwrap();
