@@ -40,6 +40,8 @@ pub(crate) struct Gap {
 
 /// Wider gaps than this are passed by every robot, metres.
 const WIDE_M: f64 = 2.0;
+/// Of many obstacles the gaps narrower than this are looked for first, metres.
+const LEAST_WIDE_M: f64 = WIDE_M / 16.0;
 
 /// What rounding may do to a length, metres.
 const ROUNDING_M: f64 = 1e-9;
@@ -80,7 +82,32 @@ impl FloorPlan {
         plan
     }
 
+    /// Only so many gaps are kept, the narrowest: where there are more of them among near neighbours, those farther apart need not
+    /// be looked at.
     fn find_gaps(&mut self) {
+        let (count, mut up_to_m) = (self.obstacles.len(), WIDE_M);
+        // So few pairs that all are kept.
+        let is_small = count * count.saturating_sub(1) / 2 <= MOST_GAPS;
+        if !is_small {
+            up_to_m = LEAST_WIDE_M;
+        }
+        loop {
+            self.gaps = self.gaps_below(up_to_m);
+            if up_to_m >= WIDE_M || self.gaps.len() > MOST_GAPS {
+                break;
+            }
+            up_to_m = (2.0 * up_to_m).min(WIDE_M);
+        }
+        // So many that looking through them would take longer than driving around: the narrowest count.
+        if self.gaps.len() > MOST_GAPS {
+            self.gaps.sort_by(|a, b| a.width_m.total_cmp(&b.width_m));
+            self.gaps.truncate(MOST_GAPS);
+        }
+    }
+
+    /// The gaps that are narrower than this.
+    fn gaps_below(&self, up_to_m: f64) -> Vec<Gap> {
+        let mut gaps = Vec::new();
         // Those that begin farther to the left than the widest is wide cannot reach here.
         let mut by_left: Vec<(f64, usize)> = self.obstacles.iter().map(Obstacle::left_m).zip(0..).collect();
         by_left.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -95,7 +122,7 @@ impl FloorPlan {
                 .map(|(_, i)| *i)
         };
         for (i, a) in self.obstacles.iter().enumerate() {
-            let (centre, reach_m) = (a.outline.centre(), a.outline.reach_m() + WIDE_M);
+            let (centre, reach_m) = (a.outline.centre(), a.outline.reach_m() + up_to_m);
             let is_near = |k: &usize| {
                 let other = self.obstacles.get(*k).filter(|_| *k != i).map(|other| &other.outline);
                 other.is_some_and(|other| (centre - other.centre()).norm() <= reach_m + other.reach_m())
@@ -107,7 +134,7 @@ impl FloorPlan {
                 if a.z_m[0] >= b.z_m[1] || b.z_m[0] >= a.z_m[1] {
                     continue;
                 }
-                let contact = a.outline.contact(&b.outline, WIDE_M);
+                let contact = a.outline.contact(&b.outline, up_to_m);
                 let (width_m, middle) = (contact.distance_m, a.outline.beside(&contact));
                 let is_filled = |k: &usize| {
                     let outline = self.obstacles.get(*k).filter(|_| *k != j).map(|other| &other.outline);
@@ -119,16 +146,12 @@ impl FloorPlan {
                     })
                 };
                 // What fills the middle is half as far from `a` as `b` may be.
-                if width_m > 0.0 && width_m < WIDE_M && !near.iter().any(is_filled) {
-                    self.gaps.push(Gap { middle, width_m });
+                if width_m > 0.0 && width_m < up_to_m && !near.iter().any(is_filled) {
+                    gaps.push(Gap { middle, width_m });
                 }
             }
         }
-        // So many that looking through them would take longer than driving around: the narrowest count.
-        if self.gaps.len() > MOST_GAPS {
-            self.gaps.sort_by(|a, b| a.width_m.total_cmp(&b.width_m));
-            self.gaps.truncate(MOST_GAPS);
-        }
+        gaps
     }
 }
 
@@ -166,6 +189,23 @@ mod tests {
         let plan = FloorPlan::new(&[pillar(0.0), pillar(1.0), pillar(0.5)]);
         assert_eq!(plan.gaps.len(), 2);
         assert!(FloorPlan::new(&[pillar(0.0), pillar(5.0)]).gaps.is_empty());
+    }
+
+    #[test]
+    fn of_too_many_gaps_the_narrowest_are_kept_wherever_they_are_looked_for_first() {
+        // Pillars on a spiral whose turns draw together: gaps of all widths.
+        let pillar = |i: u32| {
+            let (angle, radius) = (0.4 * f64::from(i).sqrt(), 0.1 * f64::from(i).sqrt());
+            FixedBody {
+                world_from_body: Isometry3::translation(radius * angle.cos(), radius * angle.sin(), 0.5),
+                ..fixed(Shape::cylinder(0.005, 0.5).unwrap())
+            }
+        };
+        let plan = FloorPlan::new(&(0..1500).map(pillar).collect::<Vec<_>>());
+        let mut all = plan.gaps_below(WIDE_M);
+        assert!(all.len() > MOST_GAPS, "{}", all.len());
+        all.sort_by(|a, b| a.width_m.total_cmp(&b.width_m));
+        assert_eq!(plan.gaps, all[..MOST_GAPS]);
     }
 
     #[test]
