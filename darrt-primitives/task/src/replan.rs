@@ -1,7 +1,10 @@
 //! From a plan for another problem, or for the same: the steps that still verify are kept, the rest is planned anew.
 //!
 //! Steps can be kept up to a place where the hand is free: from there the rest is a problem of its own, whose plan is put behind
-//! them, and the whole is judged as any plan. Where objects stood in the old plan later on is proposed to the new search.
+//! them, and the whole is judged as any plan. Where the old plan is right again behind what is wrong with it, only the gap is
+//! planned (`splice`); else, where objects stood in the old plan later on is proposed to the new search.
+
+mod splice;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,6 +25,7 @@ use crate::registry::Registry;
 use crate::robot::{RobotFacts, TaskRobot};
 use crate::verify::{Proof, Refusal, VerifyOptions, verify_unless};
 use crate::world::{self, Built};
+use splice::Spliced;
 
 /// What stands on a surface may be this far from its height, metres.
 const ON_TOP_M: f64 = 1e-3;
@@ -44,8 +48,10 @@ pub struct ReplanRequest {
 pub struct Replanned {
     /// How planning ended. Its counts are those of the search for the rest.
     pub result: PlanResult,
-    /// Steps that are kept.
+    /// Steps that are kept at its beginning.
     pub kept: usize,
+    /// Steps that are kept at its end.
+    pub tail: usize,
     /// Steps of the old plan.
     pub of: usize,
     /// Why the step behind the last one that verifies does not; `None` if all of them do.
@@ -81,7 +87,7 @@ pub fn replan<M: TaskRobot>(
     let good = old.allowed(good);
     if let (Ok(proof), true) = (judged, request.keep.is_none_or(|keep| keep == of) && good == of) {
         let result = as_it_is(registry, &old.file, proof).clocked(&facts);
-        return Ok(Replanned { result, kept: of, of, refused: None });
+        return Ok(Replanned { result, kept: of, tail: 0, of, refused: None });
     }
     // What is whole and yet refused fails at the goal.
     let good = if good == 0 && refused.is_some() && old.holds_but_for_the_goal() { of } else { good };
@@ -102,12 +108,19 @@ pub fn replan<M: TaskRobot>(
             (0..=useful).rev().find(free).unwrap_or(0)
         }
     };
+    if refused.is_some()
+        && good < of
+        && request.keep.is_none()
+        && let Some(Spliced { result, tail }) = old.spliced(registry, request, (kept, good), observer)?
+    {
+        return Ok(Replanned { result, kept, tail, of, refused });
+    }
     let attempts = if request.keep.is_some() || kept == 0 { vec![kept] } else { vec![kept, 0] };
     let mut last = None;
     for kept in attempts {
         let result = old.completed(registry, request, kept, observer)?;
         let is_done = result.plan.is_some() || result.stop == Stop::Cancelled;
-        last = Some(Replanned { result, kept, of, refused: refused.clone() });
+        last = Some(Replanned { result, kept, tail: 0, of, refused: refused.clone() });
         if is_done {
             break;
         }

@@ -159,12 +159,15 @@ fn planned(
     let from = check::read(program, path)?;
     let keep = options.keep.map(|keep| usize::try_from(keep).unwrap_or(usize::MAX));
     let whole = ReplanRequest { plan: request.clone(), from, keep };
-    let Replanned { result, kept, of, refused: why } = program.replan(&whole, cancel, progress).map_err(refused)?;
+    let Replanned { result, kept, tail, of, refused: why } =
+        program.replan(&whole, cancel, progress).map_err(refused)?;
     let steps = counted(of as u64, "step");
-    let kept = match kept {
-        0 => "none is kept".to_owned(),
-        kept if kept == of => "all are kept".to_owned(),
-        kept => format!("the first {kept} are kept"),
+    let kept = match (kept, tail) {
+        (0, 0) => "none is kept".to_owned(),
+        (kept, 0) if kept == of => "all are kept".to_owned(),
+        (kept, 0) => format!("the first {kept} are kept"),
+        (0, tail) => format!("the last {tail} are kept"),
+        (kept, tail) => format!("the first {kept} and the last {tail} are kept"),
     };
     let why = why.map_or_else(String::new, |why| format!("; the plan is no longer right: {why}"));
     Ok((result, Some(format!("from {}: of {steps} {kept}{why}", path.display()))))

@@ -86,9 +86,10 @@ fn of_plan(program: &dyn Program, options: &WhyNotOptions, output: &mut Output) 
     }
     let whole = ReplanRequest { plan: request.clone(), from, keep: None };
     let replanned = program.replan(&whole, &cancel, &mut Silent).map_err(failed)?;
-    let kept = match replanned.kept {
-        0 => "planned anew".to_owned(),
-        kept => format!("with the first {} kept", counted(kept as u64, "step")),
+    let kept = match (replanned.kept, replanned.tail) {
+        (0, 0) => "planned anew".to_owned(),
+        (kept, 0) => format!("with the first {} kept", counted(kept as u64, "step")),
+        (kept, tail) => format!("with the first {kept} and the last {} kept", counted(tail as u64, "step")),
     };
     if let Some(plan) = &replanned.result.plan {
         let steps = counted(plan.steps.len() as u64, "step");

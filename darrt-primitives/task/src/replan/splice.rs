@@ -1,0 +1,174 @@
+//! An old plan is taken up again behind what is wrong with it: only the gap is planned anew.
+//!
+//! Behind the gap everything must stand as the old plan had it there, the robot too, so that its last steps can follow as they are.
+
+use darrt_core::observe::Observer;
+use nalgebra::{Isometry3, Point2};
+
+use super::{ON_TOP_M, Old, ROUNDING, ReplanRequest};
+use crate::plan_file::{PlanFile, Pose, Step, Waypoint};
+use crate::planning::{PlanRequest, PlanResult, plan_without_clock};
+use crate::planning_error::PlanningError;
+use crate::problem_file::{Goal, GoalState, ObjectGoal, ProblemFile, RobotGoal, Symmetry};
+use crate::registry::Registry;
+use crate::robot::TaskRobot;
+use crate::verify::{VerifyOptions, verify_unless};
+
+/// How near objects and robot must come to where the old plan goes on, metres and radians: what a search ends at exactly.
+const EXACTLY: f64 = 1e-6;
+/// Iterations after which the gap is given up: what is near a plan takes few.
+const ITERATIONS: u64 = 300;
+
+/// A plan with a new piece in its middle.
+pub(super) struct Spliced {
+    pub(super) result: PlanResult,
+    /// Steps kept at its end.
+    pub(super) tail: usize,
+}
+
+impl Old<'_> {
+    /// The first `kept` steps, a plan for the gap, and the last steps of the old plan from behind step `bad`, the first that is
+    /// wrong. `None` if the old plan cannot be taken up again, or no plan for the gap is found soon.
+    ///
+    /// # Errors
+    /// As planning.
+    pub(super) fn spliced<M: TaskRobot>(
+        &self,
+        registry: &Registry<M>,
+        request: &ReplanRequest,
+        (kept, bad): (usize, usize),
+        observer: &mut dyn Observer,
+    ) -> Result<Option<Spliced>, PlanningError> {
+        let Some(join) = self.taken_up_behind(bad) else { return Ok(None) };
+        let Some(problem) = self.gap(kept, join) else { return Ok(None) };
+        let most = request.plan.iterations.or(problem.budget.iterations).unwrap_or(ITERATIONS).min(ITERATIONS);
+        let hints = self.hints(kept);
+        let rest = PlanRequest { problem, hints, iterations: Some(most), record: false, ..request.plan.clone() };
+        let (mut result, _) = plan_without_clock(registry, &rest, self.cancel, observer)?;
+        let Some(found) = result.plan.take() else { return Ok(None) };
+        let Some(whole) = self.with_tail(self.joined(kept, &found), join) else { return Ok(None) };
+        let Ok(proof) = verify_unless(&whole, self.facts, &VerifyOptions::default(), self.cancel) else {
+            return Ok(None);
+        };
+        (result.plan, result.proof) = (Some(whole), Some(proof));
+        (result.found, result.execution_s, result.partial) = (None, None, None);
+        Ok(Some(Spliced { result: result.clocked(self.facts), tail: self.file.steps.len() - join }))
+    }
+
+    /// The first place behind step `bad` from which the old plan is right to its end: there the hand is free, and the robot is
+    /// about to do something with an object.
+    fn taken_up_behind(&self, mut bad: usize) -> Option<usize> {
+        let of = self.file.steps.len();
+        loop {
+            let first = (bad + 1..of).find(|count| self.is_free_after(*count))?;
+            let objects = &self.end(first).objects;
+            let still = (first..of).take_while(|count| self.end(*count).objects == *objects);
+            let join = still.filter(|count| self.is_free_after(*count)).last()?;
+            let tail = PlanFile {
+                problem: self.rest(join)?,
+                start: self.end(join).clone(),
+                steps: self.file.steps.get(join..)?.to_vec(),
+                ..self.file.clone()
+            };
+            match verify_unless(&tail, self.facts, &VerifyOptions::default(), self.cancel) {
+                Ok(_) => return Some(join),
+                // At the goal, or at one of its steps.
+                Err(refusal) => bad = join + (refusal.step?.checked_sub(1)? as usize),
+            }
+        }
+    }
+
+    /// From behind the first `kept` steps to where the old plan is taken up again.
+    fn gap(&self, kept: usize, join: usize) -> Option<ProblemFile> {
+        let mut problem = if kept == 0 { self.file.problem.clone() } else { self.rest(kept)? };
+        let geometry = self.file.problem.geometry().ok()?;
+        let (here, there) = (self.end(kept), self.end(join));
+        let mut objects = Vec::new();
+        for (object, solid) in self.file.problem.objects.iter().zip(&geometry.objects) {
+            let name = object.name.as_str();
+            let pose = there.objects.get(name)?;
+            if here.objects.get(name) == Some(pose) {
+                continue;
+            }
+            let pose = Isometry3::from(*pose);
+            let [x, y, z] = pose.translation.vector.into();
+            let under = (&Point2::new(x, y), z - solid.depth_below_origin);
+            objects.push(ObjectGoal {
+                object: object.name.clone(),
+                on: Some(self.file.problem.surface_under(object, &geometry.scene, under, ON_TOP_M)?),
+                at: Some([x, y]),
+                region: None,
+                position: None,
+                tolerance_m: EXACTLY,
+                yaw: Some(pose.rotation.euler_angles().2),
+                yaw_tolerance: EXACTLY,
+                state: Some(GoalState::Released),
+            });
+        }
+        let joints = self.facts.arm_joints.iter().map(|name| there.joints.get(name.as_str()).copied());
+        let robot = RobotGoal {
+            base: Some(there.base),
+            joints: Some(joints.collect::<Option<_>>()?),
+            tool: None,
+            tolerance_m: EXACTLY,
+            tolerance_rad: EXACTLY,
+        };
+        problem.goal = Goal { objects, robot: Some(robot) };
+        problem.validate(&problem.name).ok()?;
+        Some(problem)
+    }
+
+    /// `begun`, which ends where the old plan is taken up again but for rounding, with the last steps of that behind it.
+    fn with_tail(&self, mut begun: PlanFile, join: usize) -> Option<PlanFile> {
+        let there = self.end(join);
+        let end = begun.steps.last()?.waypoints.last()?.clone();
+        let is_round: Vec<_> =
+            self.file.problem.objects.iter().map(|o| (&*o.name, o.symmetry() == Symmetry::Z)).collect();
+        if !is_there(&end, there, &is_round) {
+            return None;
+        }
+        let mut tail: Vec<Step> = self.file.steps.get(join..)?.to_vec();
+        for (name, is_round) in is_round {
+            let [now, then] = [&end, there].map(|waypoint| waypoint.objects.get(name).copied());
+            let (now, then) = (now?, then?);
+            // A round object may be turned otherwise; all that follows goes on from there.
+            let turn = Isometry3::from(then).rotation.rotation_to(&Isometry3::from(now).rotation);
+            let own = Isometry3::from(then).rotation;
+            let turned = own.inverse() * turn * own;
+            let turned = |pose: Pose| Pose::from(Isometry3::from(pose) * turned);
+            for step in &mut tail {
+                for pose in step.waypoints.iter_mut().filter_map(|waypoint| waypoint.objects.get_mut(name)) {
+                    // What has not moved yet stands where the new piece has left it, to the last bit.
+                    *pose = if *pose == then {
+                        now
+                    } else if is_round {
+                        turned(*pose)
+                    } else {
+                        *pose
+                    };
+                }
+                if let Some(hold) = step.holds.as_mut().filter(|hold| is_round && hold.object == name) {
+                    hold.tool_from_object = turned(hold.tool_from_object);
+                }
+            }
+        }
+        *tail.first_mut()?.waypoints.first_mut()? = end;
+        begun.steps.extend(tail);
+        begun.contracts.extend(self.file.contracts.iter().map(|(name, contract)| (name.clone(), *contract)));
+        begun.contracts.retain(|name, _| begun.steps.iter().any(|step| step.primitive == *name));
+        Some(begun)
+    }
+}
+
+/// Do robot and objects stand alike but for rounding? How a round object is turned is nothing that anybody could see.
+fn is_there(a: &Waypoint, b: &Waypoint, objects: &[(&str, bool)]) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING;
+    let joints = a.joints.iter().all(|(name, value)| b.joints.get(name).is_some_and(|other| near(*value, *other)));
+    let mut objects = objects.iter().map(|(name, is_round)| {
+        let [Some(a), Some(b)] = [a, b].map(|waypoint| waypoint.objects.get(*name)) else { return false };
+        let places = a.position.iter().zip(&b.position).all(|(a, b)| near(*a, *b));
+        let [a, b] = [a, b].map(|pose| Isometry3::from(*pose).rotation);
+        places && (*is_round || a.angle_to(&b) <= EXACTLY)
+    });
+    joints && a.base.iter().zip(&b.base).all(|(a, b)| near(*a, *b)) && objects.all(|is_near| is_near)
+}
