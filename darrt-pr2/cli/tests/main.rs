@@ -1,6 +1,7 @@
 //! The tests of this package in one program: what they have in common is compiled and linked once.
 
 mod bad_input;
+mod browser;
 mod cli_bench;
 mod cli_execute;
 mod cli_export;

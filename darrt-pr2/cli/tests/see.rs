@@ -1,10 +1,6 @@
 //! What a run leaves behind to look at: why there is no plan, how the search went, and what is wrong with an idea.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "a test stops at the first surprise, and says what it skips"
-)]
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -13,7 +9,8 @@ use std::sync::OnceLock;
 use darrt_task::recording::Recording;
 use darrt_task::viewer::data::ViewerData;
 
-use crate::program::{darrt, text};
+use crate::browser::dom;
+use crate::program::{darrt, run, text};
 
 /// A mug in a cage of eight posts, and a jar that can be put where it shall be.
 fn caged() -> String {
@@ -286,26 +283,7 @@ fn the_report_of_a_benchmark_leads_to_the_plans_that_were_kept() {
 
 #[test]
 fn a_browser_shows_the_causes_without_a_complaint() {
-    let is_there =
-        |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
-    let Some(browser) = ["chromium", "chromium-browser", "google-chrome"].into_iter().find(is_there) else {
-        eprintln!("skipped: this machine has no Chromium");
-        return;
-    };
-    let profile = tempfile::tempdir().unwrap();
-    let output = Command::new(browser)
-        .args(["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
-        .args(["--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run"])
-        .args(["--host-resolver-rules=MAP * ~NOTFOUND", "--enable-logging=stderr", "--dump-dom"])
-        .arg(format!("--user-data-dir={}", profile.path().display()))
-        .arg("--virtual-time-budget=3000")
-        .arg(format!("file://{}", failed().join("caged.why.html").display()))
-        .output()
-        .unwrap();
-    let said = text(&output.stderr);
-    let complaints: Vec<&str> = said.lines().filter(|line| line.contains("CONSOLE")).collect();
-    assert!(complaints.is_empty(), "{complaints:?}");
-    let page = text(&output.stdout);
+    let Some(page) = dom(&failed().join("caged.why.html")) else { return };
     let list = |id: &str| page.split_once(&format!("id=\"{id}\">")).map(|(_, rest)| rest).unwrap();
     let causes = list("causes").split("</ul>").next().unwrap();
     assert!(causes.contains("aria-pressed=\"false\"") && causes.contains("`mug`"), "{causes}");
@@ -354,4 +332,31 @@ fn a_plan_moves_in_one_svg_file_with_one_frame_at_a_time() {
         assert_eq!(run.status.code(), Some(2));
         assert!(text(&run.stderr).contains(why), "{}", text(&run.stderr));
     }
+}
+
+#[test]
+fn a_robot_is_shown_with_a_slider_for_every_joint() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    run(folder, &["show", "table-arm"], 0);
+    let data = data_in(&folder.join("table-arm.robot.html"));
+    assert!(data.steps.is_empty() && data.robot.variables.len() >= 7, "{}", data.robot.variables.len());
+    // The same from its own file, which is no problem and no plan, and says what to do with it.
+    let (printed, _) = run(folder, &["robot", "list", "--print", "table-arm"], 0);
+    std::fs::write(folder.join("my arm.toml"), printed.replace("\"table-arm.urdf\"", "\"arm.urdf\"")).unwrap();
+    let (_, complaint) = run(folder, &["plan", "my arm.toml"], 2);
+    assert!(
+        complaint.contains("is a robot file, not a problem") && complaint.contains("--robot 'my arm.toml'"),
+        "{complaint}"
+    );
+    let (_, complaint) = run(folder, &["show", "table-arm", "--moving"], 2);
+    assert!(complaint.contains("--moving is not for robots"), "{complaint}");
+    let page = std::fs::read_to_string(folder.join("table-arm.robot.html")).unwrap();
+    // A script in the page moves a slider as a hand would.
+    let probe = "<script>{ const slider = document.querySelector('.joint input'), tool = () => moment.links[robot.tool].join();\
+                 const before = tool(); slider.value = (Number(slider.min) + Number(slider.max)) / 2 + 0.3;\
+                 slider.dispatchEvent(new Event('input')); document.title = before === tool() ? 'still' : 'moved'; }</script></body>";
+    std::fs::write(folder.join("probe.html"), page.replace("</body>", probe)).unwrap();
+    let Some(dom) = dom(&folder.join("probe.html")) else { return };
+    assert!(dom.contains("<title>moved</title>"), "{}", &dom[..dom.len().min(400)]);
 }

@@ -1,4 +1,4 @@
-//! Tells a problem from a plan by what a file says about itself, so that a command that is given the wrong one can say
+//! Tells problems, plans, recordings and robots from each other by what a file says about itself, so that a command that is given the wrong one can say
 //! so and name the right command.
 
 use std::io::Read as _;
@@ -20,6 +20,8 @@ pub enum FileKind {
     Plan,
     /// A recorded search (JSON).
     Recording,
+    /// A robot file (TOML).
+    Robot,
 }
 
 impl FileKind {
@@ -37,8 +39,9 @@ impl FileKind {
             }
             return value.starts_with("\"darrt-problem\"").then_some(Self::JsonProblem);
         }
-        let says = |line: &str| line.trim_start().starts_with("format") && line.contains("darrt-problem");
-        text.lines().any(says).then_some(Self::Problem)
+        let formats = [("darrt-problem", Self::Problem), ("darrt-robot", Self::Robot)];
+        let said = text.lines().filter(|line| line.trim_start().starts_with("format"));
+        said.flat_map(|line| formats.iter().filter(move |(name, _)| line.contains(name))).map(|(_, kind)| *kind).next()
     }
 
     /// What the beginning of a file says; for files that are not read as a whole.
@@ -56,6 +59,10 @@ impl FileKind {
                 "is a plan, not a problem; judge it with `darrt check {file}`, draw it with `darrt show {file}`"
             )),
             Self::Recording => Some(format!("is a recorded search, not a problem; draw it with `darrt show {file}`")),
+            Self::Robot => Some(format!(
+                "is a robot file, not a problem; plan for it with `darrt plan PROBLEM --robot {file}`, draw it with `darrt show \
+                 {file}`"
+            )),
         }
     }
 
@@ -66,6 +73,7 @@ impl FileKind {
             Self::Plan => None,
             Self::JsonProblem => Some("is a problem as JSON, not a plan".to_owned()),
             Self::Recording => Some(format!("is a recorded search, not a plan; draw it with `darrt show {file}`")),
+            Self::Robot => Some(format!("is a robot file, not a plan; draw it with `darrt show {file}`")),
             Self::Problem => Some(format!("is a problem, not a plan; plan it with `darrt plan {file}`")),
         }
     }
@@ -98,6 +106,7 @@ mod tests {
         assert_eq!(FileKind::of_text(plan), Some(FileKind::Plan));
         assert_eq!(FileKind::of_text(" {\"format\": \"darrt-problem\"}"), Some(FileKind::JsonProblem));
         assert_eq!(FileKind::of_text("# mine\n format = 'darrt-problem'\nx = = 2"), Some(FileKind::Problem));
+        assert_eq!(FileKind::of_text("# mine\nformat = \"darrt-robot\"\nversion = 1"), Some(FileKind::Robot));
         assert_eq!(FileKind::of_text(&plan.replace("darrt-plan", "darrt-plot")), None);
         assert_eq!(FileKind::of_text(&plan.replace("darrt-plan", "darrt-recording")), Some(FileKind::Recording));
         for text in ["", "{}", "[1]", "format = 1", "name = \"darrt-problem\""] {

@@ -9,7 +9,7 @@ use super::any_count;
 /// Options of `darrt show`.
 #[derive(Debug, Args)]
 pub struct ShowOptions {
-    /// Name of a built-in problem, a problem file, a plan file (.json), or a recorded search (.json)
+    /// Name of a built-in problem or robot, a problem file, a robot file, a plan file (.json), or a recorded search (.json)
     pub source: String,
     /// Write the picture here: .html (3-D, moving), .svg, .png or .glb; a recorded search: .html, .graphml or .dot
     /// [default: PROBLEM.html in the current folder]

@@ -49,7 +49,6 @@ fn list(options: &RobotListOptions, output: &mut Output) -> Result<Exit, Failure
 fn check(program: &dyn Program, options: &RobotCheckOptions, output: &mut Output) -> Result<Exit, Failure> {
     let name = &options.robot;
     let inspection = inspect(name)?;
-    let is_shipped = shipped::all().iter().any(|robot| robot.name == *name);
     output.print(&format!("{name}: {}", inspection.name))?;
     inspection.understood.iter().try_for_each(|line| output.print(line))?;
     if options.pairs {
@@ -58,14 +57,14 @@ fn check(program: &dyn Program, options: &RobotCheckOptions, output: &mut Output
     inspection.odd.iter().try_for_each(|line| output.print(&format!("odd:      {line}")))?;
     if let Some(path) = &options.problem {
         let place = output::writable(path)?;
-        let line = robot_line(name, is_shipped, path);
+        let line = robot_line(name, path);
         output::write_file(&place, trial::problem(&inspection, &line, inspection.drives))?;
         output.print(&format!("problem:  {}", path.display()))?;
     }
     if !options.no_picture {
         let default = || PathBuf::from(format!("{}.robot.html", output::file_stem(&inspection.name)));
         let path = options.picture.clone().unwrap_or_else(default);
-        draw(program, &inspection, (name, is_shipped), &path)?;
+        draw(program, &inspection, name, &path)?;
         output.print(&format!("picture:  {}", path.display()))?;
     }
     if inspection.odd.is_empty() {
@@ -74,10 +73,15 @@ fn check(program: &dyn Program, options: &RobotCheckOptions, output: &mut Output
     Ok(Exit::Solved)
 }
 
+/// Is this the name of a robot that ships?
+pub(super) fn is_shipped(name: &str) -> bool {
+    shipped::all().iter().any(|robot| robot.name == *name)
+}
+
 /// The line of a problem file at `problem` that names the robot.
-fn robot_line(name: &str, is_shipped: bool, problem: &Path) -> String {
+fn robot_line(name: &str, problem: &Path) -> String {
     let quoted = |text: &str| serde_json::Value::from(text).to_string();
-    if is_shipped {
+    if is_shipped(name) {
         return format!("model = {}", quoted(name));
     }
     // From the folder of the problem, as far as that is simple; else from the root.
@@ -92,21 +96,25 @@ fn robot_line(name: &str, is_shipped: bool, problem: &Path) -> String {
     format!("file = {}", quoted(&file.to_string_lossy()))
 }
 
-/// The robot before its first problem.
-fn draw(
+/// The robot before its first problem; where the picture is.
+///
+/// # Errors
+/// What cannot be built, drawn or written.
+pub(super) fn draw(
     program: &dyn Program,
     inspection: &Inspection,
-    (name, is_shipped): (&str, bool),
+    name: &str,
     path: &Path,
-) -> Result<(), Failure> {
+) -> Result<PathBuf, Failure> {
     let format = Format::of_path(path)?;
     let place = output::writable(path)?;
     let here = Path::new("problem.toml");
-    let text = trial::problem(inspection, &robot_line(name, is_shipped, here), inspection.drives);
+    let text = trial::problem(inspection, &robot_line(name, here), inspection.drives);
     let problem = ProblemFile::from_toml(&text, &inspection.name)?;
     let robot = program.facts(&problem).map_err(|error| Failure::input(error.to_string()))?;
     let story = Story::of_problem(&problem, &robot)?;
-    output::write_file(&place, &drawing::file(&story, None, &robot, format, Extent::Whole)?)
+    output::write_file(&place, &drawing::file(&story, None, &robot, format, Extent::Whole)?)?;
+    Ok(place)
 }
 
 fn new(options: &RobotNewOptions, output: &mut Output) -> Result<Exit, Failure> {

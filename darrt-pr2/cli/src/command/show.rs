@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use super::robot;
 use crate::args::ShowOptions;
 use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
 use crate::{browser, drawing, steps};
 use darrt_task::file_kind::{self, FileKind};
+use darrt_task::file_robot::inspect::inspect;
 use darrt_task::picture::{self, Extent, Format, Story};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::problem_file::ProblemFile;
@@ -23,7 +25,11 @@ use darrt_task::viewer::search::SearchData;
 /// What cannot be read, built or written.
 pub(crate) fn run(program: &dyn Program, options: &ShowOptions, output: &mut Output) -> Result<Exit, Failure> {
     let path = Path::new(&options.source);
-    if program.problems().find(&options.source).is_none() && FileKind::of_file(path) == Some(FileKind::Recording) {
+    let is_problem = program.problems().find(&options.source).is_some();
+    if !is_problem && (FileKind::of_file(path) == Some(FileKind::Robot) || robot::is_shipped(&options.source)) {
+        return robot_file(program, options, output);
+    }
+    if !is_problem && FileKind::of_file(path) == Some(FileKind::Recording) {
         return recorded(program, options, output);
     }
     if let Some(option) =
@@ -53,6 +59,26 @@ pub(crate) fn run(program: &dyn Program, options: &ShowOptions, output: &mut Out
     if !story.steps.is_empty() {
         output.print(&steps::table(&story))?;
     }
+    output.print(&format!("picture:  {}", path.display()))?;
+    if options.open {
+        browser::open(&place)?;
+    }
+    Ok(Exit::Solved)
+}
+
+/// Shows a robot: its shapes, and on the page a slider for every joint.
+fn robot_file(program: &dyn Program, options: &ShowOptions, output: &mut Output) -> Result<Exit, Failure> {
+    let given = [("--moving", options.moving), ("--overview", options.overview)];
+    let given = given
+        .into_iter()
+        .chain([("--attempt", options.attempt.is_some()), ("--iteration", options.iteration.is_some())]);
+    if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+        return Err(Failure::input(format!("{}: {option} is not for robots", options.source)));
+    }
+    let inspection = inspect(&options.source)?;
+    let default = || PathBuf::from(format!("{}.robot.html", output::file_stem(&inspection.name)));
+    let path = options.output.clone().unwrap_or_else(default);
+    let place = robot::draw(program, &inspection, &options.source, &path)?;
     output.print(&format!("picture:  {}", path.display()))?;
     if options.open {
         browser::open(&place)?;

@@ -1,11 +1,15 @@
 const jointRows = robot.variables.map(({ name, limits }, i) => {
   const make = (tag, more) => Object.assign(document.createElement(tag), more);
   const value = make('span'), mark = make('b'), row = make('div', { className: 'joint' });
+  // Where no plan moves the robot, a person does.
+  const slider = steps.length ? null : make('input', { type: 'range', min: limits?.[0] ?? -Math.PI, max: limits?.[1] ?? Math.PI, step: 'any' });
+  slider?.setAttribute('aria-label', name);
+  slider?.addEventListener('input', () => pose(i, Number(slider.value)));
   const bar = make('div', { title: limits ? `${limits[0].toFixed(2)} to ${limits[1].toFixed(2)}` : 'turns without end' });
   bar.append(mark);
-  row.append(make('span', { textContent: name }), value, bar);
+  row.append(make('span', { textContent: name }), value, slider ?? bar);
   (driven.has(i) || !steps.length ? $('joints') : $('resting')).append(row);
-  return { row, value, mark, shown: null };
+  return { row, value, mark, slider, shown: null };
 });
 const metres = m => m < 0.1 ? `${(1000 * m).toFixed(1)} mm` : `${m.toFixed(2)} m`;
 const shown = {};
@@ -15,12 +19,13 @@ let shownStep = -1;
 function showMoment() {
   const { k, u, time, state } = moment, step = steps[k];
   state.joints.forEach((value, i) => {
-    const { row, value: text, mark, shown } = jointRows[i];
+    const { row, value: text, mark, slider, shown } = jointRows[i];
     if (shown === value) return;
     const { kind, limits } = robot.variables[i];
     const [low, high] = limits ?? [-Math.PI, Math.PI], at = limits ? value : shortWay(value), part = clamp((at - low) / (high - low), 0, 1);
     text.textContent = kind === 'turning' ? `${(at * 180 / Math.PI).toFixed(1)}°` : metres(at);
     mark.style.left = `${100 * part}%`;
+    if (slider && document.activeElement !== slider) slider.value = at;
     row.classList.toggle('tight', Boolean(limits) && Math.min(part, 1 - part) < 0.03);
     jointRows[i].shown = value;
   });

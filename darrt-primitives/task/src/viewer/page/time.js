@@ -11,6 +11,15 @@ function seek(time) {
   showMoment();
   isStale = true;
 }
+/** Puts one joint of a robot that no plan moves elsewhere. */
+function pose(variable, value) {
+  const joints = [...moment.state.joints];
+  joints[variable] = value;
+  moment.state = { ...moment.state, joints };
+  moment.links = linkPoses(moment.state.base, joints);
+  showMoment();
+  isStale = true;
+}
 /** Goes to the waypoint or the step before or after. */
 function jump(direction, isStep) {
   play(false);
