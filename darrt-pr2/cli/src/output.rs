@@ -86,6 +86,22 @@ pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
     a == b || place(a).is_some_and(|a| place(b) == Some(a))
 }
 
+/// Nothing that is read is written over, and no two results go to one file. All with what they are.
+///
+/// # Errors
+/// [`Exit::BadInput`] with the file.
+pub(crate) fn keep_apart(read: &[(&str, &Path)], written: &[(&str, &Path)]) -> Result<(), Failure> {
+    for (place, (what, path)) in written.iter().enumerate() {
+        if let Some((input, _)) = read.iter().find(|(_, input)| input.exists() && is_same_file(input, path)) {
+            return Err(Failure::input(format!("{}: is the {input} itself, it would be lost", path.display())));
+        }
+        if let Some((other, _)) = written.iter().skip(place + 1).find(|(_, other)| is_same_file(other, path)) {
+            return Err(Failure::input(format!("{}: cannot be both the {what} and the {other}", path.display())));
+        }
+    }
+    Ok(())
+}
+
 /// Puts `bytes` at `path` in one move: whoever looks sees the old file, the whole new one, or none.
 ///
 /// # Errors

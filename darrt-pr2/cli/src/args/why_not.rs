@@ -1,6 +1,9 @@
 //! Options of `darrt why-not`.
 
+use std::f64::consts::TAU;
+
 use clap::Args;
+use darrt_primitives::kinematics::limit::wrap_to_pi;
 
 use super::{any_count, positive};
 
@@ -32,7 +35,7 @@ pub struct WhyNotOptions {
     #[arg(long, value_name = "X,Y,YAW", value_parser = three, allow_hyphen_values = true, conflicts_with = "tool")]
     pub base: Option<[f64; 3]>,
     /// The joints of the arm, from the base outwards [default: as the problem starts]
-    #[arg(long, value_name = "J1,J2,...", value_delimiter = ',', value_parser = coordinate, allow_hyphen_values = true, conflicts_with = "tool")]
+    #[arg(long, value_name = "J1,J2,...", value_delimiter = ',', value_parser = joint, allow_hyphen_values = true, conflicts_with = "tool")]
     pub joints: Option<Vec<f64>>,
     /// Seed for planning on from a plan
     #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = any_count, allow_hyphen_values = true)]
@@ -59,12 +62,31 @@ fn coordinates<const N: usize>(text: &str) -> Result<[f64; N], String> {
     values.try_into().map_err(|_| format!("must be {N} numbers with commas between, not {found}"))
 }
 
+/// More than a turn was meant in degrees.
+fn check_angle(value: f64) -> Result<(), String> {
+    if value.abs() <= TAU {
+        return Ok(());
+    }
+    Err(format!("{value} is an angle in radians, at most a full turn of {TAU:.3}"))
+}
+
+/// A joint turns, or slides by less than robots are long.
+fn joint(text: &str) -> Result<f64, String> {
+    let value = coordinate(text)?;
+    check_angle(value).map(|()| value)
+}
+
+/// A base: headings are wrapped.
 fn three(text: &str) -> Result<[f64; 3], String> {
-    coordinates(text)
+    let [x, y, yaw] = coordinates(text)?;
+    check_angle(yaw)?;
+    Ok([x, y, wrap_to_pi(yaw)])
 }
 
 fn six(text: &str) -> Result<[f64; 6], String> {
-    coordinates(text)
+    let values: [f64; 6] = coordinates(text)?;
+    values.iter().skip(3).try_for_each(|angle| check_angle(*angle))?;
+    Ok(values)
 }
 
 #[cfg(test)]
@@ -75,6 +97,10 @@ mod tests {
     fn poses_have_as_many_finite_numbers_as_they_need() {
         assert_eq!((three("1, -2,0.5"), coordinate("-0")), (Ok([1.0, -2.0, 0.5]), Ok(-0.0)));
         assert_eq!(six("1,2,3").unwrap_err(), "must be 6 numbers with commas between, not 3");
+        let [_, _, yaw] = three("0,0,3.5").unwrap();
+        assert!((yaw - (3.5 - TAU)).abs() < 1e-12);
+        assert!(three("0,0,90").unwrap_err().contains("90 is an angle in radians"));
+        assert!(six("0.6,0,0.9,0,90,0").is_err() && six("-90,90,0.9,0,1.57,0").is_ok() && joint("-90").is_err());
         for bad in ["", "1,2,", "1,2,nan", "inf,0,0", "1e7,0,0", "a,b,c"] {
             assert!(three(bad).is_err(), "{bad}");
         }

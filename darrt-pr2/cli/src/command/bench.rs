@@ -191,17 +191,13 @@ impl Told {
     fn choose(options: &BenchOptions) -> Result<Self, Failure> {
         let report = options.report.as_deref().map(output::writable).transpose()?;
         let out = options.out.as_deref().unwrap_or(Path::new(DEFAULT_OUT));
-        if let Some(page) = &report
-            && options
-                .merge
-                .iter()
-                .map(PathBuf::as_path)
-                .chain([out])
-                .any(|results| output::is_same_file(page, results))
-        {
-            let text =
-                format!("{}: cannot be both the page and a file of results, which would be lost", page.display());
-            return Err(Failure::input(text));
+        let problems = options.problems.iter().map(|name| ("problem file", Path::new(name)));
+        let results = options.merge.iter().map(|path| ("file of results", path.as_path()));
+        if let Some(page) = &report {
+            // Those of an earlier run are taken up.
+            let read: Vec<_> = problems.chain(results).chain([("file of results", out)]).collect();
+            output::keep_apart(&read, &[("page", page)])?;
+            output::keep_apart(&[], &[("page", page), ("file of results", out)])?;
         }
         for folder in [&options.ompl, &options.keep].into_iter().flatten() {
             std::fs::create_dir_all(folder).map_err(|error| {

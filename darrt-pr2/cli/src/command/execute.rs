@@ -54,6 +54,10 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     let places = [&options.page, &options.mcap].map(|path| path.as_deref().map(output::writable).transpose());
     let [page_place, mcap_place] = places;
     let (page_place, mcap_place) = (page_place?, mcap_place?);
+    let read = [("plan", path), ("noise file", Path::new(&options.noise))];
+    let written = [("page", &page_place), ("recording", &mcap_place)];
+    let written: Vec<_> = written.iter().filter_map(|(what, place)| Some((*what, place.as_deref()?))).collect();
+    output::keep_apart(&read, &written)?;
     let prediction = || execution.predict(&noise, options.replan);
     if options.predict {
         let prediction = prediction();

@@ -48,7 +48,10 @@ fn words(explanation: &Explanation) -> String {
     if let Some(count) = solved_as_it_is {
         lines.push(format!("{problem}: has a plan as it is, found in {}", counted(*count, "iteration")));
     } else {
-        lines.push(format!("{problem}: no plan in {}", counted(*iterations, "iteration")));
+        match &explanation.refused {
+            Some(why) => lines.push(format!("{problem}: refused as it is: {why}")),
+            None => lines.push(format!("{problem}: no plan in {}", counted(*iterations, "iteration"))),
+        }
         lines.extend(explanation.causes.iter().flat_map(diagnosis::text::of_cause));
         let found = if solved.is_empty() { "none of them has a plan" } else { "with a plan:" };
         lines.push(format!("{} planned, {found}", counted(*tried, "problem")));

@@ -28,8 +28,8 @@ pub(crate) fn run(program: &dyn Program, options: &ExportOptions, output: &mut O
     let name = options.plan.display();
     let path = options.output.clone().unwrap_or_else(|| beside(&options.plan, options.to));
     let place = output::writable(&path)?;
-    if options.to != ExportFormat::Plan && output::is_same_file(&options.plan, &place) {
-        return Err(Failure::input(format!("{name}: is the plan itself, it would be lost")));
+    if options.to != ExportFormat::Plan {
+        output::keep_apart(&[("plan", &options.plan)], &[("export", &place)])?;
     }
     let refuse = |why: String| Failure::new(Exit::Refused, on_one_line(&format!("{name}: refused: {why}")));
     plan.problem.check_files().map_err(|error| Failure::input(format!("{name}: {error}")))?;

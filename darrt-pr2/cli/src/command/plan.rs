@@ -326,24 +326,23 @@ impl Files {
             None => None,
         };
         let record = options.record.as_deref().map(output::writable).transpose()?;
-        let is_problem = |path: &Path| asked.exists() && output::is_same_file(asked, path);
-        let all = [Some(&plan), picture.as_ref().map(|(path, _)| path), record.as_ref()];
-        if let Some(path) = all.into_iter().flatten().find(|path| is_problem(path)) {
-            return Err(Failure::input(format!("{}: is the problem file itself, it would be lost", path.display())));
+        let why = options.why.as_deref().map(output::writable).transpose()?;
+        let mut read = vec![("problem file", asked)];
+        let mut written = vec![("plan", plan.as_path())];
+        written.extend(picture.as_ref().map(|(path, _)| ("picture", path.as_path())));
+        let further: Vec<_> = [("recorded search", &record), ("reasons", &why)]
+            .into_iter()
+            .filter_map(|(what, path)| Some((what, path.as_deref()?)))
+            .collect();
+        // A plan may take the place of the one that it was made from.
+        if let Some(from) = &options.from {
+            output::keep_apart(&[("old plan", from.as_path())], &further)?;
         }
-        if picture.as_ref().is_some_and(|(path, _)| output::is_same_file(path, &plan)) {
-            let text = format!("{}: cannot be both the plan and the picture", plan.display());
-            return Err(Failure::input(text));
+        if let Some(robot) = &options.robot {
+            read.push(("robot file", Path::new(robot)));
         }
-        if let Some(path) = &record
-            && [Some(&plan), picture.as_ref().map(|(path, _)| path)]
-                .into_iter()
-                .flatten()
-                .any(|other| output::is_same_file(path, other))
-        {
-            let text = format!("{}: cannot be both the recorded search and the plan or picture", path.display());
-            return Err(Failure::input(text));
-        }
+        written.extend(further);
+        output::keep_apart(&read, &written)?;
         Ok(Self { plan, picture, record })
     }
 

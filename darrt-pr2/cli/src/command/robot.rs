@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use darrt_task::file_kind::FileKind;
 use darrt_task::file_robot::inspect::{Inspection, inspect};
 use darrt_task::file_robot::{guess, shipped, trial};
 use darrt_task::picture::{Extent, Format, Story};
@@ -57,6 +58,10 @@ fn check(program: &dyn Program, options: &RobotCheckOptions, output: &mut Output
     inspection.odd.iter().try_for_each(|line| output.print(&format!("odd:      {line}")))?;
     if let Some(path) = &options.problem {
         let place = output::writable(path)?;
+        if path.exists() && FileKind::of_file(path) != Some(FileKind::Problem) {
+            let text = format!("{}: is there already and is no problem, it would be lost", path.display());
+            return Err(Failure::input(text));
+        }
         let line = robot_line(name, path);
         output::write_file(&place, trial::problem(&inspection, &line, inspection.drives))?;
         output.print(&format!("problem:  {}", path.display()))?;

@@ -45,6 +45,7 @@ pub(crate) fn run(program: &dyn Program, options: &ShowOptions, output: &mut Out
     let path = options.output.clone().unwrap_or_else(default);
     let format = Format::of_path(&path)?;
     let place = output::writable(&path)?;
+    output::keep_apart(&[("file that is drawn", Path::new(&options.source))], &[("picture", &place)])?;
     let extent = if options.overview { Extent::Overview } else { Extent::Whole };
     let bytes = match (&plan, options.moving) {
         (_, false) => drawing::file(&story, plan.as_ref(), &robot, format, extent)?,

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cause::Cause;
 use super::relax::Relaxation;
-use super::{causes, looked_for};
+use super::{Diagnosis, causes, looked_for};
 use crate::planning::{PlanRequest, plan_without_clock};
 use crate::planning_error::PlanningError;
 use crate::problem_file::ProblemFile;
@@ -61,6 +61,9 @@ pub struct Explanation {
     pub problem: String,
     /// Iterations for each changed problem.
     pub iterations: u64,
+    /// Why it is refused as it is, before any search, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refused: Option<String>,
     /// What keeps a plan away as it is.
     pub causes: Vec<Cause>,
     /// The problem has a plan as it is: the iterations that it took.
@@ -84,18 +87,28 @@ pub fn explain<M: TaskRobot>(
 ) -> Result<Explanation, PlanningError> {
     let problem = &request.plan.problem;
     registry.check(problem, &problem.name)?;
-    let found = causes(registry, &request.plan).unwrap_or_default();
     let solver = Solver { registry, request, cancel, tried: AtomicUsize::new(0) };
+    // What is proven comes before what a few tries find.
+    let (as_it_is, refused) = match solver.solve(problem, Vec::new()) {
+        Ok(solved) => (solved, None),
+        Err(error) => (None, Some(error)),
+    };
+    let proven = refused.as_ref().and_then(|error| Diagnosis::of_error(&problem.name, error));
+    let found = match proven {
+        Some(proven) => proven.causes,
+        None => causes(registry, &request.plan).unwrap_or_default(),
+    };
     let mut explanation = Explanation {
         problem: problem.name.clone(),
         iterations: request.iterations,
+        refused: refused.map(|error| error.to_string()),
         causes: found,
         solved_as_it_is: None,
         solved: Vec::new(),
         tried: 0,
         is_interrupted: false,
     };
-    if let Some(solved) = solver.solve(problem, Vec::new()) {
+    if let Some(solved) = as_it_is {
         explanation.solved_as_it_is = Some(solved.iterations);
     } else {
         let mut singles: Vec<_> = Relaxation::all(registry, problem);
@@ -146,7 +159,7 @@ impl<M: TaskRobot> Solver<'_, M> {
                 let index = next.fetch_add(1, SeqCst);
                 let Some(set) = sets.get(index).filter(|_| !self.cancel.is_cancelled()) else { return };
                 let Some(changed) = applied(&self.request.plan.problem, set) else { continue };
-                if let (Some(solved), Ok(mut done)) = (self.solve(&changed, set.clone()), done.lock()) {
+                if let (Ok(Some(solved)), Ok(mut done)) = (self.solve(&changed, set.clone()), done.lock()) {
                     done.push((index, solved));
                 }
             }
@@ -162,13 +175,16 @@ impl<M: TaskRobot> Solver<'_, M> {
     }
 
     /// Plans one problem.
-    fn solve(&self, changed: &ProblemFile, changes: Vec<Relaxation>) -> Option<Solved> {
+    ///
+    /// # Errors
+    /// It is refused before the search.
+    fn solve(&self, changed: &ProblemFile, changes: Vec<Relaxation>) -> Result<Option<Solved>, PlanningError> {
         let more = changes.iter().find_map(|change| match change {
             Relaxation::MoreTime { iterations } => Some(*iterations),
             _ => None,
         });
         let mut request = PlanRequest { problem: changed.clone(), ..self.request.plan.clone() };
-        let is_doubted = looked_for(self.registry, &request, true).ok()?.iter().any(Cause::is_decisive);
+        let is_doubted = looked_for(self.registry, &request, true)?.iter().any(Cause::is_decisive);
         let iterations = more.unwrap_or(self.request.iterations);
         // A problem as it is gets all of them: that nothing was found in a few tries is no proof.
         let share = if is_doubted && !changes.is_empty() { DOUBTED } else { 1 };
@@ -178,9 +194,11 @@ impl<M: TaskRobot> Solver<'_, M> {
         request.as_found = true;
         self.tried.fetch_add(1, SeqCst);
         let begun = Instant::now();
-        let (result, _) = plan_without_clock(self.registry, &request, self.cancel, &mut Silent).ok()?;
-        let steps = result.plan?.steps.len() as u64;
-        Some(Solved { changes, iterations: result.iterations, steps, seconds: begun.elapsed().as_secs_f64() })
+        let (result, _) = plan_without_clock(self.registry, &request, self.cancel, &mut Silent)?;
+        Ok(result.plan.map(|plan| {
+            let (steps, seconds) = (plan.steps.len() as u64, begun.elapsed().as_secs_f64());
+            Solved { changes, iterations: result.iterations, steps, seconds }
+        }))
     }
 
     /// As few as possible of the obstacles whose absence makes a plan: one after the other is put back if there is a plan with it.
@@ -191,7 +209,7 @@ impl<M: TaskRobot> Solver<'_, M> {
             let fewer: Vec<_> = gone.iter().filter(|other| *other != name).cloned().collect();
             let set = vec![Relaxation::Without { obstacles: fewer.clone() }];
             let changed = applied(&self.request.plan.problem, &set)?;
-            if let Some(solved) = self.solve(&changed, set) {
+            if let Ok(Some(solved)) = self.solve(&changed, set) {
                 (gone, best) = (fewer, solved);
             }
         }
