@@ -6,6 +6,7 @@ use darrt_core::budget::Stop;
 use darrt_core::observe::accounts::{Accounts, Bucket};
 use darrt_primitives::collision_scene::NearPair;
 
+use darrt_task::diagnosis::cause::Cause;
 use darrt_task::diagnosis::{Diagnosis, Outcome};
 use darrt_task::planning::PlanResult;
 use darrt_task::text::counted;
@@ -114,6 +115,9 @@ pub(crate) fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> 
         format!(" (nearest so far: {metres:.2} m to move, in {})", counted(result.nodes as u64, "state"))
     });
     let remedies: Vec<_> = diagnosis.remedies.iter().map(text::of_relaxation).collect();
+    let is_steered = diagnosis.causes.iter().any(|cause| matches!(cause, Cause::Steered { .. }));
+    let nothing = if is_steered { "beside the rules of `steer` nothing" } else { "nothing" };
+    let or_allow = if is_steered { ", or to allow more in `steer`," } else { "" };
     let would_help = format!("it would help, as far as a few tries tell: {}", remedies.join("; or "));
     let mut lines: Vec<_> = (!remedies.is_empty()).then_some(would_help).into_iter().collect();
     lines.push(match diagnosis.outcome {
@@ -121,12 +125,12 @@ pub(crate) fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> 
             "more time or another seed will hardly help; `darrt explain` looks for changes that make a plan".to_owned()
         }
         Outcome::TooShort => format!(
-            "nothing was found that keeps a plan away, and {} say nothing{progress}: {limit} will help",
+            "{nothing} was found that keeps a plan away, and {} say nothing{progress}: {limit} will help",
             counted(result.iterations, "iteration")
         ),
         Outcome::MayBeFound => format!(
-            "nothing was found that keeps a plan away: each object can be taken and brought to its goal by itself{progress}. \
-             Another --seed, {limit} or a --restart may help"
+            "{nothing} was found that keeps a plan away: each object can be taken and brought to its goal by itself{progress}. \
+             Another --seed, {limit} or a --restart{or_allow} may help"
         ),
     });
     lines
@@ -135,7 +139,6 @@ pub(crate) fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use darrt_task::diagnosis::cause::Cause;
 
     fn result(iterations: u64) -> PlanResult {
         let mut accounts = Accounts::new(vec!["Pick", "Push", "Place"]);

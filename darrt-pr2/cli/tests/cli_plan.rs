@@ -246,3 +246,31 @@ fn a_plan_written_through_a_link_is_read_through_it() {
     run(top.path(), &["check", "p.json"], 0);
     run(top.path(), &["check", "store/p.json"], 0);
 }
+
+#[test]
+fn what_is_read_is_never_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    solved_problem(folder);
+    run(folder, &["plan", "easy.toml", "-o", "old.json", "--no-picture", "-q"], 0);
+    std::fs::write(folder.join("noise.toml"), run(folder, &["execute"], 0).0).unwrap();
+    let inputs = ["easy.toml", "old.json", "noise.toml"];
+    let before = inputs.map(|name| std::fs::read(folder.join(name)).unwrap());
+    for arguments in [
+        &["plan", "easy.toml", "--why", "easy.toml"][..],
+        &["plan", "easy.toml", "--record", "./easy.toml"],
+        &["plan", "easy.toml", "--from", "old.json", "--why", "old.json", "-o", "new.json"],
+        &["plan", "easy.toml", "--from", "old.json", "--record", "old.json", "-o", "new.json"],
+        &["execute", "old.json", "--page", "old.json"],
+        &["execute", "old.json", "--mcap", "old.json"],
+        &["execute", "old.json", "--noise", "noise.toml", "--page", "noise.toml"],
+        &["robot", "check", "table-arm", "--problem", "noise.toml"],
+        &["bench", "easy.toml", "--seeds", "1", "--report", "easy.toml"],
+    ] {
+        let (_, complaint) = run(folder, arguments, 2);
+        assert!(complaint.contains("would be lost"), "{arguments:?}: {complaint}");
+    }
+    let (_, complaint) = run(folder, &["execute", "old.json", "--page", "one", "--mcap", "one"], 2);
+    assert!(complaint.contains("cannot be both the page and the recording"), "{complaint}");
+    assert_eq!(inputs.map(|name| std::fs::read(folder.join(name)).unwrap()), before);
+}

@@ -91,6 +91,12 @@ impl<'a> Placed<'a> {
     }
 }
 
+/// How much higher or lower than its goal an object may be.
+fn up_slack_m(goal: &ObjectGoal) -> f64 {
+    // What rests is as high as what it rests on.
+    if goal.grip == Grip::Released { RESTING_M } else { goal.tolerance_m }
+}
+
 impl<M: Manipulator> Room<'_, M> {
     /// Checks that of the places, where goals name places, some combination is free.
     fn check_places(&self) -> Result<(), PlanningError> {
@@ -129,8 +135,7 @@ impl<M: Manipulator> Room<'_, M> {
                 None => (0.0, true),
             };
             let aside_m = one.goal.tolerance_m + yaw_slack_m;
-            // What rests is as high as what it rests on.
-            let up_m = if one.goal.grip == Grip::Released { RESTING_M } else { one.goal.tolerance_m };
+            let up_m = up_slack_m(one.goal);
             let refuse =
                 |by: &Body, occupant| Ok(Some(goal_blocked(&movable.body, &one.pose, (by.name.to_string(), occupant))));
             if let Some(core) = shrunk::shrunk(&movable.body, [aside_m, up_m], is_turned) {
@@ -152,11 +157,8 @@ impl<M: Manipulator> Room<'_, M> {
                 if body.round_radius_m.is_none() && other.goal.yaw.is_none_or(|(_, tolerance)| tolerance > 0.0) {
                     continue;
                 }
-                let Some(core) = shrunk::shrunk(
-                    &movable.body,
-                    [aside_m, up_m].map(|slack_m| slack_m + other.goal.tolerance_m),
-                    is_turned,
-                ) else {
+                let slack_m = [aside_m + other.goal.tolerance_m, up_m + up_slack_m(other.goal)];
+                let Some(core) = shrunk::shrunk(&movable.body, slack_m, is_turned) else {
                     continue;
                 };
                 if meets(&core, &one.pose, &body.body, &other.pose)? {

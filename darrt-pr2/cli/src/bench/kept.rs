@@ -40,6 +40,20 @@ pub(crate) fn keep(
     Ok(Some(format!("{stem}.html")))
 }
 
+/// Where the pages of kept plans are.
+pub struct Kept<'a> {
+    /// As a link that ends in a slash or is empty.
+    pub link: String,
+    /// Is a page of this name there?
+    pub is_there: &'a dyn Fn(&str) -> bool,
+}
+
+impl std::fmt::Debug for Kept<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Kept").field("link", &self.link).finish_non_exhaustive()
+    }
+}
+
 /// The way from the folder of `page` to `folder`, as a link; `None` if they share no root.
 pub(crate) fn link_to(folder: &Path, page: &Path) -> Option<String> {
     let beside = page.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));

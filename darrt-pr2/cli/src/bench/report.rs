@@ -20,6 +20,7 @@ use std::fmt::Write as _;
 use svg::node::Text;
 
 use super::collection::Collection;
+use super::kept::Kept;
 use super::machine::Machine;
 use super::ompl_log::date;
 use super::record::Record;
@@ -51,8 +52,8 @@ impl Look {
 
 /// The text of the page, problems in the order of `known` first; the same results give the same bytes.
 ///
-/// `plans` is where the pages of kept plans are, as a link that ends in a slash or is empty.
-pub fn page(all: &Collection, known: &[&str], plans: Option<&str>) -> String {
+/// `plans` is where the pages of kept plans are.
+pub fn page(all: &Collection, known: &[&str], plans: Option<&Kept<'_>>) -> String {
     let summaries = summaries(all, known);
     let look = Look { variants: all.variants(&VARIANTS.map(|variant| variant.name)) };
     let mut problems: Vec<&str> = summaries.iter().map(|summary| summary.problem.as_str()).collect();
@@ -266,9 +267,13 @@ mod tests {
             let page = (seed < 2).then(|| format!("bowl-default-{seed}.html"));
             all.add(Record { page, ..sample("bowl", "default", seed, 0.1, true) }, "a").unwrap();
         }
-        let text = page(&all, &KNOWN, Some("../plans/"));
+        let kept = |is_there| Kept { link: "../plans/".to_owned(), is_there };
+        let text = page(&all, &KNOWN, Some(&kept(&|_| true)));
         assert!(text.contains("href=\"../plans/bowl-default-1.html\""));
         assert_eq!(text.matches("href=").count(), 2);
+        // Runs of an earlier day may have kept theirs elsewhere.
+        let text = page(&all, &KNOWN, Some(&kept(&|name| name == "bowl-default-0.html")));
+        assert!(text.matches("href=").count() == 1 && text.contains("bowl-default-0.html"));
         assert!(!page(&all, &KNOWN, None).contains("href="), "nobody knows where they are");
     }
 

@@ -209,8 +209,11 @@ impl Told {
 
     fn write(&self, all: &Collection, known: &[&str]) -> Result<(), Failure> {
         if let Some(path) = &self.report {
-            let plans = self.plans.as_deref().and_then(|folder| kept::link_to(folder, path));
-            output::write_file(path, report::page(all, known, plans.as_deref()))?;
+            let folder = self.plans.as_deref();
+            let is_there = |name: &str| folder.is_some_and(|folder| folder.join(name).is_file());
+            let link = folder.and_then(|folder| kept::link_to(folder, path));
+            let plans = link.map(|link| kept::Kept { link, is_there: &is_there });
+            output::write_file(path, report::page(all, known, plans.as_ref()))?;
         }
         let Some(folder) = &self.logs else { return Ok(()) };
         for problem in all.problems(known) {

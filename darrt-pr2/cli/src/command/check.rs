@@ -134,7 +134,8 @@ pub(crate) fn words(proof: &Proof) -> String {
 
 /// How long the plan takes.
 pub(crate) fn clock(timing: &Timing) -> String {
-    format!("clock:    {:.1} s at the robot's limits", timing.duration_s)
+    // Not -0.0, which a sum of nothing is.
+    format!("clock:    {:.1} s at the robot's limits", timing.duration_s + 0.0)
 }
 
 /// What a person should know besides.

@@ -24,8 +24,9 @@ use darrt_task::planning::PlanRequest;
 use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
 use darrt_task::replan::ReplanRequest;
-use darrt_task::text::counted;
+use darrt_task::text::{counted, on_one_line};
 use darrt_task::text_file;
+use darrt_task::verify::{self, VerifyOptions};
 
 /// Iterations in which another plan is looked for on the way: a clock would make runs depend on the machine.
 const REPLAN_ITERATIONS: u64 = 6000;
@@ -48,8 +49,12 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     let name = path.display();
     let refuse = |error: &dyn std::fmt::Display| Failure::input(format!("{name}: {error}"));
     plan.problem.check_files().map_err(|error| refuse(&error))?;
-    plan.check_complete().map_err(|flaw| refuse(&flaw))?;
+    plan.check_complete()
+        .map_err(|flaw| Failure::new(Exit::Refused, on_one_line(&format!("{name}: refused: {flaw}"))))?;
     let robot = program.facts(&plan.problem).map_err(|error| refuse(&error))?;
+    // What is tried in physics has been judged, as what goes to a robot.
+    verify::verify_with(&plan, &robot, &VerifyOptions::default())
+        .map_err(|refusal| Failure::new(Exit::Refused, on_one_line(&format!("{name}: refused: {refusal}"))))?;
     let execution = Execution::new(&plan, &robot).map_err(|error| refuse(&error))?;
     let places = [&options.page, &options.mcap].map(|path| path.as_deref().map(output::writable).transpose());
     let [page_place, mcap_place] = places;

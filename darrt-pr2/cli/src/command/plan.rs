@@ -83,7 +83,7 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
     files.keep(&result)?;
     files.draw(plan, &story, &robot, result.recording.as_ref())?;
     if !options.quiet {
-        output.print(&files.words(options))?;
+        output.print(&files.words(&result))?;
     }
     if let Some((path, _)) = files.picture.as_ref().filter(|_| options.open) {
         browser::open(path)?;
@@ -396,13 +396,16 @@ impl Files {
         Ok(path)
     }
 
-    fn words(&self, options: &PlanOptions) -> String {
+    fn words(&self, result: &PlanResult) -> String {
         let mut words = format!("plan:     {}", self.plan.display());
         if let Some((path, _)) = &self.picture {
             let _ = write!(words, "\npicture:  {}", path.display());
         }
-        if let Some(path) = &options.record {
-            let _ = write!(words, "\nsearch:   {}", path.display());
+        if let Some(path) = &self.record {
+            let _ = match result.recording {
+                Some(_) => write!(words, "\nsearch:   {}", path.display()),
+                None => write!(words, "\nsearch:   there was none, {} is not written", path.display()),
+            };
         }
         words
     }

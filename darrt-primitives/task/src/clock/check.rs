@@ -17,7 +17,12 @@ pub(crate) fn check(plan: &PlanFile, timing: &Timing) -> Result<(), ClockError> 
     let fault = |place: String, why: String| Err(ClockError::Timing { place, why });
     let (found, expected) = (timing.steps.len(), plan.steps.len());
     if found != expected {
-        return fault("timing.steps".to_owned(), format!("has {found} entries for {expected} steps"));
+        return fault(
+            "timing.steps".to_owned(),
+            format!(
+                "has {found} entries for {expected} steps; a plan whose steps were edited gets a new clock if `timing` is deleted"
+            ),
+        );
     }
     let mut sum_s = 0.0;
     for (index, (step, clock)) in plan.steps.iter().zip(&timing.steps).enumerate() {

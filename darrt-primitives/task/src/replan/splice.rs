@@ -43,7 +43,7 @@ impl Old<'_> {
         let Some(problem) = self.gap(kept, join) else { return Ok(None) };
         let most = request.plan.iterations.or(problem.budget.iterations).unwrap_or(ITERATIONS).min(ITERATIONS);
         let hints = self.hints(kept);
-        let rest = PlanRequest { problem, hints, iterations: Some(most), record: false, ..request.plan.clone() };
+        let rest = PlanRequest { problem, hints, iterations: Some(most), ..request.plan.clone() };
         let (mut result, _) = plan_without_clock(registry, &rest, self.cancel, observer)?;
         let Some(found) = result.plan.take() else { return Ok(None) };
         let Some(whole) = self.with_tail(self.joined(kept, &found), join) else { return Ok(None) };

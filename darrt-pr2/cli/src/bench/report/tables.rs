@@ -7,7 +7,7 @@ use darrt_core::observe::accounts::Bucket;
 
 use super::{Row, escaped};
 use crate::bench::collection::Collection;
-use crate::bench::kept::encoded;
+use crate::bench::kept::{Kept, encoded};
 use crate::bench::record::Record;
 use crate::bench::restarts;
 use crate::bench::statistics::Summary;
@@ -62,12 +62,13 @@ fn cell(quantile: Quantile, words: &str) -> String {
 }
 
 /// Links to the pages of the plans that were kept, by problem and variant; `None` if there are none.
-pub(super) fn plans(all: &Collection, summaries: &[Summary], folder: &str) -> Option<String> {
+pub(super) fn plans(all: &Collection, summaries: &[Summary], kept: &Kept<'_>) -> Option<String> {
     let mut text = String::new();
     for summary in summaries {
         let runs = all.group(&summary.problem, &summary.variant);
         let link = |run: &&Record| {
-            let page = encoded(run.page.as_ref()?);
+            let page = run.page.as_ref().filter(|page| (kept.is_there)(page))?;
+            let (folder, page) = (&kept.link, encoded(page));
             let steps = run.plan.as_ref().map_or_else(String::new, |plan| format!(" ({} steps)", plan.steps));
             Some(format!("<a href=\"{folder}{page}\">seed {}{steps}</a>", run.seed))
         };
