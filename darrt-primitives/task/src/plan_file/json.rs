@@ -73,6 +73,13 @@ pub(super) fn path_at(text: &str, offset: usize) -> String {
             _ => {}
         }
     }
+    // What is missing is missing from the object that ends here, not from its last key.
+    if string_start.is_none()
+        && text.as_bytes().get(offset.saturating_sub(1)) == Some(&b'}')
+        && let Some(Open::Object { key, .. }) = open.last_mut()
+    {
+        key.clear();
+    }
     written(&open)
 }
 
@@ -117,6 +124,9 @@ mod tests {
             assert_eq!(path_at(text, text.find(part).unwrap() + 1), path);
         }
         assert_eq!(path_at(text, 0), "the whole file");
+        // What is missing is noticed at the end of what it is missing from.
+        let nested = r#"{"a": {"b": 1}}"#;
+        assert_eq!([14, 15].map(|offset| path_at(nested, offset)), ["a", "the whole file"]);
         assert_eq!(path_at("\"\\", 99), "the whole file");
     }
 }

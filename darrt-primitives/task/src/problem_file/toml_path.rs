@@ -9,6 +9,10 @@ use toml::de::{DeTable, DeValue};
 ///
 /// `None` for a place outside all keys and for a text that is not TOML. The nesting of the text must be bounded.
 pub(crate) fn path_at(text: &str, place: &Range<usize>) -> Option<String> {
+    // What the whole file lacks is told of no place at all.
+    if *place == (0..0) {
+        return None;
+    }
     let table = DeTable::parse(text).ok()?;
     let mut search = Search { place, best: None };
     search.table(table.get_ref(), "");
@@ -77,6 +81,11 @@ mod tests {
 
     const TEXT: &str =
         "name = \"x\"\n[robot]\nbase = [1, 22, 3]\n[[object]]\nat = 1\n[[object]]\nshape = { box = { size = 7 } }\n";
+
+    #[test]
+    fn what_the_whole_file_lacks_belongs_to_no_key() {
+        assert_eq!(path_at(TEXT, &(0..0)), None);
+    }
 
     #[test]
     fn places_know_their_key() {
