@@ -1,5 +1,7 @@
 //! What the builder makes is what was asked for.
 
+#![allow(clippy::unwrap_used, reason = "a test says no more than that it failed")]
+
 use darrt_core::space::ComponentSpace as _;
 use darrt_core::validity::Validity as _;
 
@@ -46,7 +48,7 @@ fn the_first_error_is_said() {
     let table = |b: TabletopBuilder<Gantry>| b.table("left", [0.0; 2], [0.8, 1.2], 0.7);
     let text = said(table(room()).object(tin(), "rihgt", [0.0; 2], 0.0).object(tin(), "other", [0.0; 2], 0.0));
     assert_eq!(text, "there is no surface named \"rihgt\"");
-    assert!(said(room().table("left", [0.0; 2], [0.8, -1.2], 0.7)).contains("-"));
+    assert!(said(room().table("left", [0.0; 2], [0.8, -1.2], 0.7)).contains('-'));
     let twice = table(room()).object(tin(), "left", [0.0; 2], 0.0).object(tin(), "left", [0.3, 0.0], 0.0);
     assert!(said(twice).contains("tin"));
     assert!(said(table(table(room()))).contains("left"));
