@@ -80,7 +80,7 @@ fn check(program: &dyn Program, options: &RobotCheckOptions, output: &mut Output
 
 /// Is this the name of a robot that ships?
 pub(super) fn is_shipped(name: &str) -> bool {
-    shipped::all().iter().any(|robot| robot.name == *name)
+    shipped::all().iter().any(|robot| robot.name == name)
 }
 
 /// The line of a problem file at `problem` that names the robot.
