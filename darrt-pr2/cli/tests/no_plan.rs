@@ -1,9 +1,6 @@
 //! What the program says, writes and ends with where there is no plan.
 #![allow(clippy::unwrap_used, reason = "a test says what is wrong by panicking")]
 
-use std::path::Path;
-use std::process::{Command, Output};
-
 use darrt_task::diagnosis::cause::Cause;
 use darrt_task::diagnosis::explain::Explanation;
 use darrt_task::diagnosis::relax::Relaxation;
