@@ -10,7 +10,7 @@
 //! | [`Primitive`](crate::primitive::Primitive) | [`check_primitive`], [`try_primitive`], [`check_contacts`] | [`primitive`] |
 //! | [`Validity`](crate::validity::Validity) | [`check_validity`], [`check_by_oracle`], [`check_against_oracle`], [`check_enlarged`] | [`validity`] |
 //! | [`Goal`](crate::goal::Goal) | [`check_goal`] | [`goal`] |
-//! | [`Sampler`](crate::sample::Sampler) | [`check_sampler`], [`check_sampler_covers`] | [`sampler`] |
+//! | [`Sampler`](crate::sample::Sampler) | [`check_sampler`], [`check_sampler_covers`], [`check_sampler_learns`] | [`sampler`] |
 //! | [`Verifier`](crate::verify::Verifier) | [`check_verifier`] | [`verifier`] |
 //! | [`LocalRepair`](crate::local_repair::LocalRepair) | [`check_local_repair`] | [`local_repair`] |
 //! | [`ExecutionCost`](crate::cost::ExecutionCost) | [`check_cost`] | [`cost`] |
@@ -67,7 +67,7 @@ pub use nearest::check_nearest;
 pub use partial::check_partial;
 pub use planner::{check_accounts, check_cancel, check_planner};
 pub use primitive::{PrimitiveClaims, Tried, check_contacts, check_primitive, try_primitive};
-pub use sampler::{check_sampler, check_sampler_covers};
+pub use sampler::{check_sampler, check_sampler_covers, check_sampler_learns};
 pub use space::{SpaceClaims, check_component_space, check_covering, check_space_covers};
 pub use validity::{ValidityClaims, check_against_oracle, check_by_oracle, check_enlarged, check_validity};
 pub use verifier::{Judged, Tampered, check_verifier};

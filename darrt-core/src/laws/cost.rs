@@ -17,7 +17,7 @@ pub const GROWS: &str = "cost.grows: a part of a motion costs at most as much as
 /// What every step takes is in what it takes.
 pub const STEP: &str = "cost.step: step_s is part of what a step takes";
 /// The guess is of the order of what it guesses.
-pub const BETWEEN: &str = "cost.between: what it guesses for a way that is free is at most ten times what it takes";
+pub const BETWEEN: &str = "cost.between: what it guesses for a way that is free is at most ten times what it takes, and no more than a step for no way at all";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[FINITE, PURE, GROWS, STEP, BETWEEN];
@@ -75,6 +75,7 @@ fn run<D: Domain>(m: &D, cost: &dyn ExecutionCost<D>, instance: &Instance<D>, fr
         measure(FINITE, found).map_err(|broken| broken.of("between"))?;
         alike(PURE, &between(a, b), &found).map_err(|broken| broken.of("between"))?;
     }
+    at_most(BETWEEN, between(from, from), step_s, SLACK).map_err(|broken| broken.of("to itself"))?;
     let is_free = instance.reversible && instance.moves.is_subset_of(ComponentSet::ROBOT) && instance.object.is_none();
     if is_free && moves {
         at_most(BETWEEN, between(from, &end), FACTOR * whole, SLACK)?;

@@ -12,6 +12,7 @@ use super::watch::{entering, watched};
 use super::{Broken, at_most, equal, measure};
 
 mod extremes;
+mod metres;
 mod metric;
 
 pub use metric::{DistanceClaims, check_metric};
@@ -32,7 +33,9 @@ pub const LOWER_BOUND: &str = "distance.lower-bound: a distance that claims to b
 pub const NOT_ABOVE: &str = "distance.not-above: the shorter of two related distances is not above the longer";
 
 /// Small and large differences.
-pub const RESOLVES: &str = "distance.resolves: half-way to where the robot should be is nearer, and so are most objects close to their targets";
+pub const RESOLVES: &str = "distance.resolves: half-way to where the robot should be is a third nearer at least, and so are most objects close to their targets, and closer";
+/// Unit.
+pub const METRES: &str = "distance.metres: the distance is in metres: half-way to where the robot should be about half of it is left, and what robot and objects travel counts within a factor of 100";
 /// Symmetric, where claimed.
 pub const SYMMETRIC: &str = "distance.symmetric: a distance that claims it is the same there and back";
 /// Triangle inequality, where claimed.
@@ -40,7 +43,7 @@ pub const TRIANGLE: &str = "distance.triangle: a distance that claims it keeps t
 
 /// The laws of this file.
 pub const LAWS: &[&str] =
-    &[FINITE, PURE, ZERO_MET, POSITIVE, UNNAMED, LOWER_BOUND, NOT_ABOVE, RESOLVES, SYMMETRIC, TRIANGLE];
+    &[FINITE, PURE, ZERO_MET, POSITIVE, UNNAMED, LOWER_BOUND, NOT_ABOVE, RESOLVES, METRES, SYMMETRIC, TRIANGLE];
 
 /// Rounding that is forgiven, metres per metre.
 const SLACK: f64 = 1e-9;

@@ -5,9 +5,12 @@ use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId, State};
 
 use super::feed::{cornered, rng_of};
+
 use super::space::{SpaceClaims, check_component_space};
 use super::watch::{entering, watched};
 use super::{Broken, alike, at_most, ensure, equal, measure};
+
+mod metres;
 
 /// As many objects in every state as in the domain.
 pub const COUNT: &str = "domain.count: a state has one configuration per object of the domain";
@@ -40,6 +43,17 @@ pub const TRAVEL_BETWEEN_SYMMETRIC: &str =
 /// Travel between objects over a third.
 pub const TRAVEL_BETWEEN_TRIANGLE: &str = "domain.travel-between-triangle: the travel to an object is at most as long as that over a third object, and the way around that";
 
+/// Unit of reach.
+pub const REACH_METRES: &str =
+    "domain.reach-metres: reach is in metres: an object that travels one changes it by at most three";
+/// Reach is no constant.
+pub const REACH_DEAF: &str = "domain.reach-deaf: reach depends on where the robot is, and on where the object is";
+/// Unit of the travel between objects.
+pub const TRAVEL_BETWEEN_METRES: &str = "domain.travel-between-metres: there is no travel from an object to itself, and an object that travels a metre changes it by at most three";
+/// Travel between objects is no constant.
+pub const TRAVEL_BETWEEN_DEAF: &str =
+    "domain.travel-between-deaf: the travel between two objects depends on where they are";
+
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
     COUNT,
@@ -55,6 +69,10 @@ pub const LAWS: &[&str] = &[
     PURE,
     TRAVEL_BETWEEN_SYMMETRIC,
     TRAVEL_BETWEEN_TRIANGLE,
+    REACH_METRES,
+    REACH_DEAF,
+    TRAVEL_BETWEEN_METRES,
+    TRAVEL_BETWEEN_DEAF,
 ];
 
 /// The laws of a domain and of all its component spaces, for three states, two parameters in `[0, 1]` and
@@ -93,6 +111,7 @@ pub fn check_domain<D: Domain>(
         let [x, y] = [a, b].map(|state| cornered(m, state, &mut rng));
         let corner = travel(m, &x, &y).and_then(|()| travels_between(m, [&x, &y, c]));
         corner.map_err(|broken| broken.of("in a corner"))?;
+        metres::check(m, a, &mut rng)?;
         for ((call, was), (_, is)) in before.iter().zip(answers(m, a, b)) {
             alike(PURE, &is, was).map_err(|broken| broken.of(call))?;
             ensure(PURE, !is.contains(AGAIN), || is.clone(), "the same").map_err(|broken| broken.of(call))?;

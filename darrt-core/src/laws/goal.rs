@@ -6,6 +6,8 @@ use crate::partial::PartialState;
 use crate::random::{Purpose, Stream, stream};
 use crate::state::{ComponentId, ObjectId, State};
 
+mod extent;
+
 use super::feed::{components, moved, on_face, rng_of, spoilt_states};
 use super::watch::{drawing, entering, watched};
 use super::{Broken, alike, ensure, equal};
@@ -25,8 +27,13 @@ pub const DISCERNS: &str = "goal.discerns: a goal is not satisfied by every stat
 /// What a sample names counts.
 pub const ASKS: &str = "goal.asks: what a sample names matters: not every other place of it satisfies the goal as well";
 
+/// Parts.
+pub const PARTS: &str = "goal.parts: a state that satisfies the goal meets at least one part of it, no state meets more parts, and some that do not satisfy it meet fewer";
+/// Near.
+pub const NEAR: &str = "goal.near: where a goal always samples the same place, a seventh of the way to somewhere else no longer satisfies it";
+
 /// The laws of this file.
-pub const LAWS: &[&str] = &[SAMPLED, FITS, PURE, NAN, DISCERNS, ASKS];
+pub const LAWS: &[&str] = &[SAMPLED, FITS, PURE, NAN, DISCERNS, ASKS, PARTS, NEAR];
 
 /// How many samples are drawn: a fault in one of a thousand is then seen in the cases of one test.
 const DRAWS: u64 = 16;
@@ -65,6 +72,7 @@ impl<D: Domain> Trial<'_, D> {
         };
         let satisfied = self.is_satisfied(self.from);
         let (mut first, mut is_anything) = (None, false);
+        let mut is_same = true;
         for i in 0..DRAWS {
             let sample = draw(i)?;
             if let Some(target) = &sample {
@@ -73,6 +81,8 @@ impl<D: Domain> Trial<'_, D> {
             }
             if i == 0 {
                 first = sample;
+            } else {
+                is_same &= sample == first;
             }
         }
         alike(PURE, &draw(0)?, &first)?;
@@ -86,6 +96,10 @@ impl<D: Domain> Trial<'_, D> {
         }
         if let Some(target) = first.as_ref().filter(|_| !satisfied) {
             self.asks(target, &mut rng)?;
+            if is_same {
+                self.one_place(target, &mut rng)?;
+            }
+            self.parts(target, &mut rng)?;
         }
         equal(PURE, &self.is_satisfied(self.from), &satisfied)
     }

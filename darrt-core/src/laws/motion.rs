@@ -37,8 +37,11 @@ pub const CONTINUOUS: &str = "motion.continuous: in a billionth of a thousandth 
 /// Knots.
 pub const KNOTS: &str = "motion.knots: knots ascend and lie in [0, 1], and between two of them the robot follows the interpolation of its space";
 
+/// Not too long.
+pub const TIGHT: &str = "motion.tight: length is at most a hundred times what anything travels, and ten metres more";
+
 /// The laws of this file.
-pub const LAWS: &[&str] = &[LENGTH, START, PURE, CLAMPED, TRAVEL, MODE, FRAME, NAMED, FINITE, CONTINUOUS, KNOTS];
+pub const LAWS: &[&str] = &[LENGTH, START, PURE, CLAMPED, TRAVEL, MODE, FRAME, NAMED, FINITE, CONTINUOUS, KNOTS, TIGHT];
 
 /// How far apart two states are: metres that the farthest point of any component travels between them.
 pub type Travel<'a, D> = &'a dyn Fn(&D, &State<D>, &State<D>) -> f64;

@@ -36,6 +36,9 @@ pub fn check_nearest<D: Domain>(
     };
     let check = || {
         agree(m, distance, tree, to)?;
+        if let Some((_, root)) = tree.iter().next() {
+            agree(m, distance, &tree_of(m, &root.state, []), to).map_err(|broken| broken.of("a tree of one node"))?;
+        }
         let mut states = tree.iter().map(|(_, node)| node.state.clone());
         let Some(root) = states.next() else { return Ok(()) };
         let mut penalised = tree_of(m, &root, states);

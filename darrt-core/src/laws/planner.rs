@@ -58,7 +58,7 @@ pub fn check_planner<D: Domain>(
 ) -> Result<(), Broken> {
     let about = || format!("check_planner({problem:?}, {strategy:?}, {options:?})");
     let check = || {
-        let longest = tree(problem, strategy, options)?;
+        let ways = tree(problem, strategy, options)?;
         let one = run(problem, strategy, options, 1);
         outcome(problem, &one)?;
         for threads in [2, 8] {
@@ -69,7 +69,7 @@ pub fn check_planner<D: Domain>(
         [1, 2].into_iter().try_for_each(|threads| check_cancel(&run, options, threads))?;
         match &one.solution {
             Some(solution) => judge(problem, problem.goal(), solution.plan(), options.seed),
-            None => judge_way(problem, longest.as_ref(), options.seed),
+            None => judge_ways(problem, &ways, options.seed),
         }
     };
     // One iteration may take longer than any single call of a primitive.
@@ -91,22 +91,38 @@ fn judge<D: Domain>(problem: &Problem<D>, goal: &dyn Goal<D>, plan: &Plan<D>, se
     check_verifier(&judged, plan, seed).map(|_| ())
 }
 
-/// The same with a way through the tree, for the goal to be where it ends. What the verifier refuses as it is says nothing.
-fn judge_way<D: Domain>(problem: &Problem<D>, way: Option<&Plan<D>>, seed: u64) -> Result<(), Broken> {
-    let Some(plan) = way else { return Ok(()) };
-    let (m, end) = (problem.domain(), plan.end(problem.domain()));
-    let mode = end.mode.clone();
-    let target = PartialState::of_state(m, &end);
-    let goal = crate::goal::Region::<D>::new(
-        Box::new(move |m, state| state.mode == mode && target.is_met(m, state)),
-        Box::new(|_, _| None),
-    );
-    entering("verify");
-    if problem.verifier().verify(m, problem.start(), &goal, plan).is_err() {
-        return Ok(());
+/// The same with ways through the tree, the longest first, for the goal to be where each ends. What the verifier refuses as it is
+/// says nothing, but if that is all of many, it accepts nothing.
+fn judge_ways<D: Domain>(problem: &Problem<D>, ways: &[Plan<D>], seed: u64) -> Result<(), Broken> {
+    let m = problem.domain();
+    let mut last = None;
+    for plan in ways {
+        let end = plan.end(m);
+        let mode = end.mode.clone();
+        let target = PartialState::of_state(m, &end);
+        let goal = crate::goal::Region::<D>::new(
+            Box::new(move |m, state| state.mode == mode && target.is_met(m, state)),
+            Box::new(|_, _| None),
+        );
+        entering("verify");
+        match problem.verifier().verify(m, problem.start(), &goal, plan) {
+            Ok(_) => return judge(problem, &goal, plan, seed),
+            Err(refusal) => last = Some(refusal),
+        }
     }
-    judge(problem, &goal, plan, seed)
+    let text = || {
+        format!(
+            "{} ways refused, the last one because {}",
+            ways.len(),
+            last.map_or_else(String::new, |r| r.to_string())
+        )
+    };
+    ensure(super::verifier::ACCEPTS, ways.len() < MANY_WAYS, text, "one accepted")
 }
+
+/// So many ways are judged at most, and so many are not all refused.
+const WAYS: usize = 24;
+const MANY_WAYS: usize = 16;
 
 /// Tells the watchdog of every event.
 pub(super) struct Heart(Pulse);
@@ -151,12 +167,12 @@ fn grow<'p, D: Domain>(problem: &'p Problem<D>, strategy: &'p Strategy<D>, optio
     darrt
 }
 
-/// The laws of the tree. Returns the way to the node that has the most steps before it.
+/// The laws of the tree. Returns ways to nodes, those with the most steps first, and some of the others.
 fn tree<D: Domain>(
     problem: &Problem<D>,
     strategy: &Strategy<D>,
     options: &SolveOptions,
-) -> Result<Option<Plan<D>>, Broken> {
+) -> Result<Vec<Plan<D>>, Broken> {
     let m = problem.domain();
     let grown = grow(problem, strategy, options);
     let tree = grown.tree();
@@ -181,11 +197,12 @@ fn tree<D: Domain>(
     check_accounts(grown.accounts(), grown.iteration(), tree.len() as u64 - 1)?;
     equal(SEEDED, again.accounts(), grown.accounts())?;
     let ways = tree.iter().filter_map(|(id, _)| Plan::to_node(tree, id));
+    let mut ways: Vec<Plan<D>> = ways.filter(|way| !way.steps().is_empty()).collect();
     // The first of equally long ones.
-    Ok(ways.fold(None, |best: Option<Plan<D>>, way| match best {
-        Some(best) if best.steps().len() >= way.steps().len() => Some(best),
-        _ => Some(way),
-    }))
+    ways.sort_by_key(|way| std::cmp::Reverse(way.steps().len()));
+    let short = ways.len().saturating_sub(WAYS / 2).max(WAYS / 2);
+    let some = ways.into_iter().enumerate().filter(|(i, _)| *i < WAYS / 2 || *i >= short);
+    Ok(some.map(|(_, way)| way).collect())
 }
 
 /// Every extension was counted once, in one bucket per primitive, and every added state is a node.
@@ -237,6 +254,7 @@ fn outcome<D: Domain>(problem: &Problem<D>, outcome: &Outcome<D>) -> Result<(), 
         .verifier()
         .verify(m, problem.start(), problem.goal(), plan)
         .map_err(|refusal| Broken::new(VERIFIED, refusal.to_string(), "accepted"))?;
+    super::verifier::clearance(&again)?;
     equal(VERIFIED, &again.clearance_m, &solution.clearance_m()).map_err(|broken| broken.of("clearance"))
 }
 

@@ -21,6 +21,7 @@ use super::watch::{bounded, entering, guarded, watched};
 use super::{Broken, at_most, ensure, equal, measure};
 
 mod at_most;
+mod holds;
 mod progress;
 
 use progress::progress;
@@ -69,6 +70,9 @@ pub const FREE: &str = "primitive.free: of a hundred ways that it finds one at l
 /// Names.
 pub const NAME: &str = "primitive.name: a primitive has one name, which does not change";
 
+/// Holding.
+pub const HOLDS: &str = "primitive.holds: what is carried stays as far from the working point as it is, and what is moved otherwise stays as near to the hand";
+
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
     MOVES,
@@ -91,6 +95,7 @@ pub const LAWS: &[&str] = &[
     PROGRESS,
     TRUNCATED,
     CONTACTS,
+    HOLDS,
 ];
 
 /// What a primitive claims, and where it is looked at.
@@ -333,6 +338,7 @@ impl<D: Domain> Trial<'_, '_, D> {
             check_instance(self.m, instance, &end, self.claims.ts, &self.claims.motion)
                 .map_err(|broken| Broken { replay: Box::default(), ..broken })?;
             end = instance.at(self.m, 1.0, self.from);
+            self.on_the_way(&end).map_err(of)?;
         }
         if let Some(metres) = self.approach(self.to)? {
             let travel = instances.iter().map(|instance| instance.motion.length()).sum();
@@ -343,6 +349,17 @@ impl<D: Domain> Trial<'_, '_, D> {
         }
         self.at_most(instances, &end)?;
         if self.claims.truncates { self.truncation(instances) } else { Ok(()) }
+    }
+
+    /// Where an instance ends the same may be asked again: just there two things may be at no distance.
+    fn on_the_way(&self, here: &State<D>) -> Result<(), Broken> {
+        entering("approach");
+        let approach = guarded(PANICS, || self.primitive.approach(self.m, here, self.to))?;
+        approach.map_or(Ok(()), |metres| measure(APPROACH, metres)).map_err(|broken| broken.of("on the way"))?;
+        if self.is_useful_from(here, self.to)? {
+            let _ = self.propagate_from(here, self.to, 3)?;
+        }
+        Ok(())
     }
 
     /// Propagates towards a state on the way of the last instance: same named components, cut values.

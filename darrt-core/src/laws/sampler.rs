@@ -8,12 +8,17 @@ use crate::sample::Sampler;
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ComponentSet, ObjectId};
 
+mod learns;
+
+pub use learns::check_sampler_learns;
+
 use super::feed::values;
 use super::watch::{drawing, watched};
 use super::{Broken, alike, ensure};
 
 /// Inside.
-pub const INSIDE: &str = "sampler.inside: every named component of a sample lies in its space";
+pub const INSIDE: &str =
+    "sampler.inside: every named component of a sample lies in its space, and the groups are those of the robot";
 /// Names something.
 pub const NAMES: &str =
     "sampler.names: a sample names at least one component; towards anywhere nothing can be extended";
@@ -26,8 +31,12 @@ pub const COVERS: &str = "sampler.covers: every component that can move is named
 pub const FILLS: &str =
     "sampler.fills: samples of a component come into every twelfth of where its space draws it, along every coordinate";
 
+/// Learning.
+pub const LEARNS: &str =
+    "sampler.learns: what learns for one attempt keeps the laws whatever it has learnt, and no other learns from it";
+
 /// The laws of this file.
-pub const LAWS: &[&str] = &[INSIDE, NAMES, SEEDED, COVERS, FILLS];
+pub const LAWS: &[&str] = &[INSIDE, NAMES, SEEDED, COVERS, FILLS, LEARNS];
 
 /// How many samples each check draws: a fault in one of a thousand is then seen in the cases of one test.
 const DRAWS: u64 = 16;
@@ -36,6 +45,8 @@ const DRAWS: u64 = 16;
 const ENOUGH: usize = 300;
 /// So many samples are drawn at least to see whether they fill the space.
 const FILLING: u64 = 1024;
+/// And so many at most, if a component is named rarely.
+const MOST_FILLING: u64 = 4096;
 /// Into how many parts of equal probability the space is cut along each coordinate.
 const PARTS: usize = 12;
 /// How many samples of the space itself say where they are.
@@ -58,6 +69,13 @@ pub fn check_sampler<D: Domain>(m: &D, sampler: &dyn Sampler<D>, goal: &dyn Goal
             ensure(NAMES, !sample.components().is_empty(), || format!("{sample:?}"), "a target that names something")?;
             inside(m, &sample, seed)?;
         }
+        // A goal that cannot be sampled.
+        let nowhere = crate::goal::AnyOf::new(Vec::new());
+        for i in 0..DRAWS {
+            let rng = stream(seed, 1, i, Purpose::Sample);
+            let sample = drawing("sample of the sampler", rng, |rng| sampler.sample(m, &nowhere, rng))?;
+            inside(m, &sample, seed).map_err(|broken| broken.of("for a goal without samples"))?;
+        }
         alike(SEEDED, &draw(0)?, &first)
     };
     watched(&about, check).map_err(|broken| broken.replayed_by(about))
@@ -65,6 +83,10 @@ pub fn check_sampler<D: Domain>(m: &D, sampler: &dyn Sampler<D>, goal: &dyn Goal
 
 fn inside<D: Domain>(m: &D, sample: &PartialState<D>, seed: u64) -> Result<(), Broken> {
     sample.check(m).map_err(|error| Broken::new(INSIDE, error.to_string(), "a target of the domain"))?;
+    if let Some(robot) = sample.robot() {
+        let text = || format!("{:?}", robot.groups);
+        ensure(INSIDE, m.robot().groups().covers(robot.groups), text, "groups of the robot")?;
+    }
     // Named groups alone need a configuration around them.
     let around = m.robot().sample(&mut stream(seed, 1, 0, Purpose::Sample));
     let robot = sample.robot_overlay(m, &around);
@@ -90,6 +112,20 @@ pub fn check_sampler_covers<D: Domain>(
         for i in 0..draws.max(FILLING) {
             let rng = stream(seed, 0, i, Purpose::Sample);
             samples.push(drawing("sample of the sampler", rng, |rng| sampler.sample(m, goal, rng))?);
+        }
+        // Of what is named rarely, more.
+        let is_rare = |samples: &[PartialState<D>], id| {
+            let named = samples.iter().filter(|sample| sample.object(id).is_some()).count();
+            (1..ENOUGH).contains(&named)
+        };
+        let ids: Vec<_> = (0..m.objects().len()).map(ObjectId::new).collect();
+        let mut i = draws.max(FILLING);
+        while i < MOST_FILLING && ids.iter().any(|id| is_rare(&samples, *id)) {
+            for _ in 0..FILLING {
+                let rng = stream(seed, 0, i, Purpose::Sample);
+                samples.push(drawing("sample of the sampler", rng, |rng| sampler.sample(m, goal, rng))?);
+                i += 1;
+            }
         }
         let count = usize::try_from(draws).unwrap_or(usize::MAX);
         let named = samples.iter().take(count).fold(ComponentSet::EMPTY, |set, sample| set.union(sample.components()));
@@ -147,6 +183,39 @@ fn fills<'a, S: ComponentSpace>(
             let what = if i < count { format!("coordinate {i}") } else { "distance from a sample".to_owned() };
             let text = || format!("none of {} samples has its {what} in [{low:?}, {high:?}]", found.len());
             ensure(FILLS, is_hit, text, "some: the space draws a twelfth of its own there")?;
+        }
+    }
+    corners(&own, &found, &by_value, count)
+}
+
+/// So many of the space's own samples make a part of two coordinates large enough to be looked at, if as many samples as this
+/// are expected in it. That none is by chance happens once in 10^13 times; if half of them come from a goal, once in 10^6.
+const LARGE: usize = 24;
+const EXPECTED: usize = 30;
+
+/// Every two coordinates, each cut into three parts of equal probability: where the space draws many of its own, the sampler
+/// draws some.
+fn corners<C>(own: &[C], found: &[&C], value: &dyn Fn(usize, &C) -> f64, count: usize) -> Result<(), Broken> {
+    let cuts: Vec<[f64; 2]> = (0..count)
+        .map(|i| {
+            let mut all: Vec<f64> = own.iter().map(|q| value(i, q)).collect();
+            all.sort_by(f64::total_cmp);
+            [1, 2].map(|k| all.get(k * all.len() / 3).copied().unwrap_or(0.0))
+        })
+        .collect();
+    let part = |q: &C, i: usize| cuts.get(i).map_or(0, |cuts| cuts.iter().filter(|cut| value(i, q) > **cut).count());
+    for (i, j) in (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))) {
+        for (x, y) in (0..3).flat_map(|x| (0..3).map(move |y| (x, y))) {
+            let is_in = |q: &C| part(q, i) == x && part(q, j) == y;
+            let drawn = own.iter().filter(|q| is_in(q)).count();
+            let is_large = drawn >= LARGE && drawn * found.len() >= EXPECTED * own.len();
+            let text = || format!("none of {} samples in part {x} of coordinate {i} and part {y} of {j}", found.len());
+            ensure(
+                FILLS,
+                !is_large || found.iter().any(|q| is_in(q)),
+                text,
+                "some: the space draws many of its own there",
+            )?;
         }
     }
     Ok(())

@@ -52,8 +52,7 @@ pub const COORDINATES_ALIKE: &str =
 /// Overlay: all and none.
 pub const OVERLAY_ENDS: &str = "space.overlay-ends: overlay of all groups is the target, of no group the beginning";
 /// Overlay: groups are independent.
-pub const OVERLAY_GROUPS: &str =
-    "space.overlay-groups: overlaying group after group is overlaying them at once, and each can be undone alone";
+pub const OVERLAY_GROUPS: &str = "space.overlay-groups: overlaying group after group is overlaying them at once, in any order, and each can be undone alone";
 /// Overlay: inside.
 pub const OVERLAY_INSIDE: &str = "space.overlay-inside: an overlay of two configurations of the space lies in it";
 
@@ -68,7 +67,7 @@ pub const DIMENSION: &str =
     "space.dimension: a space whose samples differ has a degree of freedom, and at most as many as it has numbers";
 /// The tolerance is small.
 pub const TOLERANCE_SMALL: &str =
-    "space.tolerance-small: the tolerance is at most a hundredth of the way between samples";
+    "space.tolerance-small: the tolerance is at most four thousandths of the way between samples";
 /// Small differences count.
 pub const RESOLVES: &str = "space.resolves: the distance grows from the first step on: no threshold, steps or plateau";
 /// Every coordinate counts.
@@ -77,6 +76,8 @@ pub const DEAF: &str = "space.deaf: two configurations that differ in one coordi
 pub const PLACE_INSIDE: &str = "space.place-inside: what sample_at draws lies in the space";
 /// Special places: seeded.
 pub const PLACE_SEEDED: &str = "space.place-seeded: the same generator gives the same sample at a place";
+/// Samples at places differ.
+pub const PLACE_VARIED: &str = "space.place-varied: sample_at does not always draw the same where the space can move";
 /// Sampling: the whole range.
 pub const SAMPLE_FILLS: &str =
     "space.sample-fills: samples fill the range that contains accepts, along every coordinate";
@@ -93,6 +94,7 @@ pub const LAWS: &[&str] = &[
     DEAF,
     PLACE_INSIDE,
     PLACE_SEEDED,
+    PLACE_VARIED,
     SAMPLE_FILLS,
     FINITE,
     SELF,
@@ -239,7 +241,9 @@ fn interpolation<S: ComponentSpace>(
     let slack = claims.slack_at(length);
     let [early, late] = [ts[0].min(ts[1]), ts[0].max(ts[1])];
     let mut before: Option<(f64, S::Config, f64)> = None;
-    for t in [0.0, early, late, 1.0] {
+    let mut looks = [0.0, NEAR_END, 1e2 * NEAR_END, early, late, 1.0 - 1e2 * NEAR_END, 1.0 - NEAR_END, 1.0];
+    looks.sort_by(f64::total_cmp);
+    for t in looks {
         let here = space.interpolate(a, b, t);
         ensure(INSIDE, space.contains(&here), || format!("{here:?}"), "a configuration of the space")
             .map_err(|broken| broken.at(t))?;
@@ -256,6 +260,9 @@ fn interpolation<S: ComponentSpace>(
     }
     Ok(())
 }
+
+/// How near to its ends an interpolation is looked at.
+const NEAR_END: f64 = 1e-5;
 
 /// How many samples each check draws: a fault in one of a thousand is then seen in the cases of one test.
 const SAMPLES: u64 = 64;
@@ -295,6 +302,11 @@ fn overlays<S: ComponentSpace>(space: &S, [a, b, c]: [&S::Config; 3]) -> Result<
         // What c had there before does not matter once b is laid over it.
         let covered = space.overlay(&space.overlay(a, c, group), b, group);
         identical(OVERLAY_GROUPS, &covered, &one)?;
+        // What one group takes over is none of another's: the order makes no difference.
+        for other in groups_of(space).filter(|other| *other != group) {
+            let other_first = space.overlay(&space.overlay(a, c, other), b, group);
+            identical(OVERLAY_GROUPS, &space.overlay(&one, c, other), &other_first)?;
+        }
         so_far = so_far.union(group);
         step_by_step = space.overlay(&step_by_step, b, group);
         identical(OVERLAY_GROUPS, &step_by_step, &space.overlay(a, b, so_far))?;

@@ -42,7 +42,7 @@ pub const BLAME_TEXT: &str = "validity.blame-text: a blame names both bodies and
 pub const EXEMPTIONS: &str =
     "validity.exemptions: contacts that may touch never make a valid state invalid, and end with the instance";
 /// Care.
-pub const CARE: &str = "validity.care: what is free with more care is free with less, and a care of 0 are the rules";
+pub const CARE: &str = "validity.care: what is free with more care is free with less, a care of 0 are the rules, and check takes the same care as free_prefix";
 /// Obstacles.
 pub const ENLARGED: &str = "validity.enlarged: enlarging an obstacle never makes an invalid state valid";
 /// The oracle.
@@ -68,6 +68,9 @@ pub const STRICT: &str = "validity.strict: of what the user's oracle calls free,
 /// The user's oracle along motions.
 pub const ORACLE_PREFIX: &str = "validity.oracle-prefix: no state of a free prefix is blocked for the user's oracle";
 
+/// Places.
+pub const BLAME_PLACE: &str = "validity.blame-place: the places of collisions are told, and are not all the origin";
+
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
     PURE,
@@ -85,6 +88,7 @@ pub const LAWS: &[&str] = &[
     INSIDE,
     EXEMPTS,
     BLAME_KIND,
+    BLAME_PLACE,
     WITHOUT_ROBOT,
     HELD,
     LAX,
@@ -135,6 +139,9 @@ const PIECE_M: f64 = 0.005;
 /// At most so many metres lie between two looks at a free prefix, as long as it is not longer than [`MOST_LOOKS`] of them.
 const LOOK_M: f64 = 0.01;
 const MOST_LOOKS: f64 = 512.0;
+
+/// In how many steps a prefix is looked at with more care.
+const WITH_CARE: u32 = 32;
 
 struct Trial<'a, D: Domain> {
     m: &'a D,
@@ -278,9 +285,32 @@ impl<D: Domain> Trial<'_, D> {
                 let found = || format!("valid with care {care}; with less: {with_less:?}");
                 ensure(CARE, !is_more, found, "valid with less care").map_err(|broken| broken.at(t))?;
             }
+            self.one_by_one(care, &more)?;
             less = more;
         }
         Ok(())
+    }
+
+    /// With this care as well, check accepts what is in the prefix, and not all that is just behind it.
+    fn one_by_one(&self, care: usize, free: &FreePrefix) -> Result<(), Broken> {
+        let check = |t: f64| {
+            let state = self.instance.at(self.m, t, self.from);
+            self.validity.check_with(care, self.m, &state, &self.instance.contacts)
+        };
+        for i in 0..=WITH_CARE {
+            let t = free.fraction * f64::from(i) / f64::from(WITH_CARE);
+            if let (true, Err(blame)) = (free.fraction > 0.0, check(t)) {
+                let against = format!("free up to {:?} with care {care}", free.fraction);
+                return Err(Broken::new(CARE, blame.to_string(), against).at(t));
+            }
+        }
+        let window = self.parameter_of(self.claims.tight_m);
+        let is_blocked = |looks: u32| {
+            (0..=looks).any(|i| check((free.fraction + window * f64::from(i) / f64::from(looks)).min(1.0)).is_err())
+        };
+        let holds = free.blame.is_none() || is_blocked(64) || is_blocked(4096);
+        let text = || format!("{free:?} with care {care}, where check accepts all that follows");
+        ensure(CARE, holds, text, "the same care in both").map_err(|broken| broken.at(free.fraction))
     }
 
     fn cut(&self, free: &FreePrefix) -> Result<(), Broken> {

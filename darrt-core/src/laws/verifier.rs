@@ -13,7 +13,7 @@ use crate::verify::{Refusal, Verified, Verifier};
 
 use super::feed::rng_of;
 use super::watch::{entering, watched};
-use super::{Broken, equal};
+use super::{Broken, ensure, equal};
 
 mod forge;
 mod motions;
@@ -26,8 +26,16 @@ pub const STEADY: &str = "verifier.steady: the same plan gets the same verdict, 
 /// Other problems.
 pub const ITS_GOAL: &str = "verifier.its-goal: a plan is judged by the goal and the start that are handed in";
 
+/// Refusals.
+pub const REFUSAL: &str =
+    "verifier.refusal: a refusal says why, and names a step of the plan and a fraction in [0, 1] of it, or no step";
+/// Measured clearances.
+pub const CLEARANCE: &str = "verifier.clearance: a clearance of an accepted plan is finite and not negative";
+/// Accepts.
+pub const ACCEPTS: &str = "verifier.accepts: of many ways that the search found free one at least is accepted, for the goal to be where it ends";
+
 /// The laws of this file.
-pub const LAWS: &[&str] = &[REFUSES, STEADY, ITS_GOAL];
+pub const LAWS: &[&str] = &[REFUSES, STEADY, ITS_GOAL, REFUSAL, CLEARANCE, ACCEPTS];
 
 /// How often each way is tried, at other steps and with other numbers.
 const TRIES: u64 = 3;
@@ -92,9 +100,12 @@ pub fn check_verifier<D: Domain>(judged: &Judged<'_, D>, plan: &Plan<D>, seed: u
                 let mut rng = rng_of(&(seed, attempt, way.name));
                 let Some(broken) = (way.change)(&forge, &mut rng) else { continue };
                 is_tried = true;
-                if let Ok(verified) = judged.verdict(&broken) {
-                    let found = format!("accepted, with a clearance of {:?}", verified.clearance_m);
-                    return Err(Broken::new(REFUSES, found, "refused").of(way.name));
+                match judged.verdict(&broken) {
+                    Ok(verified) => {
+                        let found = format!("accepted, with a clearance of {:?}", verified.clearance_m);
+                        return Err(Broken::new(REFUSES, found, "refused").of(way.name));
+                    }
+                    Err(refusal) => readable(&refusal, &broken).map_err(|broken| broken.of(way.name))?,
                 }
             }
             (if is_tried { &mut tampered.tried } else { &mut tampered.left_out }).push(way.name);
@@ -111,7 +122,25 @@ fn accepted<D: Domain>(judged: &Judged<'_, D>, plan: &Plan<D>) -> Result<(), Bro
     let [first, second] = [(), ()].map(|()| judged.verdict(plan));
     let refused = |refusal: Refusal| Broken::new(STEADY, refusal.to_string(), "accepted, as before");
     let (first, second) = (first.map_err(refused)?, second.map_err(refused)?);
+    clearance(&first)?;
     equal(STEADY, &second.clearance_m, &first.clearance_m).map_err(|broken| broken.of("clearance"))
+}
+
+/// Overlaps by less are rounding, metres.
+const ROUNDING_M: f64 = 1e-6;
+
+/// What it measured can be.
+pub(super) fn clearance(verified: &Verified) -> Result<(), Broken> {
+    let holds = verified.clearance_m.is_none_or(|metres| metres.is_finite() && metres >= -ROUNDING_M);
+    ensure(CLEARANCE, holds, || format!("{:?} m", verified.clearance_m), "finite and not negative, or none")
+}
+
+/// A refusal that people can read.
+fn readable<D: Domain>(refusal: &Refusal, plan: &Plan<D>) -> Result<(), Broken> {
+    let is_step = refusal.step.is_none_or(|step| step < plan.steps().len());
+    let holds = !refusal.reason.trim().is_empty() && is_step && (0.0..=1.0).contains(&refusal.at);
+    let text = || format!("{refusal:?} of {} steps", plan.steps().len());
+    ensure(REFUSAL, holds, text, "a reason, and a step that there is")
 }
 
 /// The same plan for a goal that nothing satisfies, and for another start.

@@ -11,8 +11,10 @@ use nalgebra::{Isometry3, Point3, UnitQuaternion};
 use crate::grasp::{Grasp, GraspFamily, GraspKind};
 use crate::manipulator::Hand;
 
+mod covers;
 mod kind;
 mod pads;
+mod patches;
 
 /// The grid.
 pub const GRID: &str = "grasp.grid: the grid is not empty, and the same on every call";
@@ -41,8 +43,22 @@ pub const SEEDED: &str = "grasp.seeded: the same generator gives the same grasp"
 /// Variety.
 pub const VARIED: &str = "grasp.varied: a family with several grasps in its grid does not always draw the same";
 
+/// Flush.
+pub const FLUSH: &str =
+    "grasp.flush: pads are as flush with what they close on as the family says, within three degrees";
+/// Depth.
+pub const DEPTH: &str = "grasp.depth: from above, the tips stay above the bottom of the object";
+/// Covers.
+pub const COVERS: &str = "grasp.covers: what is drawn is near one of the grid, and each of the grid near one that is drawn, within 60 degrees";
+/// Pads.
+pub const PADS: &str =
+    "grasp.pads: what a family tells of the pads is finite, fits the pads of the hand, and does not change";
+
 /// The laws of this file.
-pub const LAWS: &[&str] = &[GRID, GAPS, POSE, REACH, APPROACH, BETWEEN, CONTACT, OPEN, KIND, OVERHANG, SEEDED, VARIED];
+pub const LAWS: &[&str] = &[
+    GRID, GAPS, POSE, REACH, APPROACH, BETWEEN, CONTACT, OPEN, KIND, OVERHANG, SEEDED, VARIED, FLUSH, DEPTH, COVERS,
+    PADS,
+];
 
 /// How many grasps are drawn: a fault in one of a hundred is missed once in a hundred checks.
 const DRAWS: u64 = 512;
@@ -78,6 +94,7 @@ pub fn check_grasps(family: &dyn GraspFamily, body: &Body, hand: &dyn Hand, seed
         }
         let differs = drawn.iter().any(|grasp| drawn.first() != Some(grasp));
         ensure(VARIED, differs || grid.len() < 2, || format!("{DRAWS} equal grasps"), "different ones")?;
+        covers::check(&grid, &drawn)?;
         let of_rim = grid.iter().chain(&drawn).all(|grasp| matches!(grasp.kind, GraspKind::Rim { .. }));
         equal(OVERHANG, &family.needs_overhang(), &of_rim)
     };
@@ -109,7 +126,10 @@ fn one(family: &dyn GraspFamily, body: &Body, hand: &dyn Hand, grasp: &Grasp) ->
     let tips = hand.tip_beyond_tool_m(closed).abs();
     at_most(BETWEEN, after, tips + NEAR_M, 0.0).map_err(|broken| broken.of("gap to the object, m"))?;
     pads::check(body, hand, grasp)?;
-    kind::check(grasp)
+    kind::check(grasp)?;
+    patches::depth(body, hand, grasp)?;
+    patches::told(family, hand, grasp)?;
+    patches::flush(family, body, hand, grasp)
 }
 
 /// Metres from the tool's origin to the object.

@@ -27,7 +27,8 @@ pub const LIMITS: &str = "manipulator.limits: a limit is a closed interval of tw
 /// Links.
 pub const LINKS: &str = "manipulator.links: links have names of their own, and pairs name two different links";
 /// The gripper.
-pub const HAND: &str = "manipulator.hand: the facts about the gripper are finite, and its widest gap is positive";
+pub const HAND: &str =
+    "manipulator.hand: the facts about the gripper are finite, and its widest gap is positive and at most a metre";
 /// Rigid poses.
 pub const RIGID: &str = "manipulator.rigid: every pose is finite, and its rotation is a unit quaternion";
 /// The base's frame.
@@ -81,12 +82,12 @@ pub const BASE_FINDS: &str = "manipulator.base-finds: from enough of the bases t
 /// What is no pose.
 pub const NAN: &str = "manipulator.nan: a pose with NaN in it is not reached, and a place with NaN in it is no answer";
 /// Too far away.
-pub const MAY_NOT_REACH: &str = "manipulator.may-not-reach: may_reach is false for what is a hundred metres away";
+pub const MAY_NOT_REACH: &str =
+    "manipulator.may-not-reach: may_reach is false for what is twenty metres away, in any direction";
 /// Pairs.
-pub const PAIRS: &str = "manipulator.pairs: a robot of more than two links names pairs that can collide, each once";
+pub const PAIRS: &str = "manipulator.pairs: a robot of more than two links names pairs that can collide, each once, and none that always does";
 /// Travel is of use.
-pub const TRAVEL_TIGHT: &str =
-    "manipulator.travel-tight: travel_m is at most a hundred times as far as the farthest point of the robot travels";
+pub const TRAVEL_TIGHT: &str = "manipulator.travel-tight: travel_m and what link_travel_m says are at most a hundred times as far as the farthest point of the robot travels";
 /// Strength.
 pub const STRENGTH: &str =
     "manipulator.strength: grip, payload and push force are positive, and the pads have a length";
@@ -99,7 +100,7 @@ pub const ARM_MOVES: &str = "manipulator.arm-moves: a link of the arm stands els
 pub const GAP_METRES: &str =
     "manipulator.gap-metres: the links of the fingers span the gap, and move apart as it opens";
 /// Unit of the tips.
-pub const TIPS: &str = "manipulator.tips: the links of the fingers reach as far beyond the tool as the tips do";
+pub const TIPS: &str = "manipulator.tips: the links of the fingers reach as far beyond the tool as the tips do, and are about as wide and as long as tips and pads";
 /// Unit of the weights.
 pub const WEIGHTS: &str =
     "manipulator.weights: the weight of a joint is what the hand travels with it, within a factor of thirty";
@@ -107,10 +108,27 @@ pub const WEIGHTS: &str =
 pub const SELF_PAIRS: &str = "manipulator.self-pairs: two links with four joints between them that overlap in one configuration and not in another are a pair";
 
 /// Durations.
-pub const DURATION: &str = "manipulator.duration: duration_s is finite, 0 from a configuration to itself, more for every joint and coordinate that moves, and not less with something in the hand";
+pub const DURATION: &str = "manipulator.duration: duration_s is finite, 0 from a configuration to itself, more for every joint and coordinate that moves, at 1 mm/s to 20 m/s, not less with something in the hand, and not more than by way of the middle";
+
+/// Joints.
+pub const JOINTS: &str = "manipulator.joints: every joint moves something";
+/// Fingers.
+pub const CENTRED: &str = "manipulator.centred: the tool is midway between the fingers, at every gap";
+/// Room for what is grasped.
+pub const CLEAR: &str = "manipulator.clear: no link of the hand is between the tips, or ahead of them";
+/// Variety of bases.
+pub const BASE_VARIED: &str = "manipulator.base-varied: base_for does not always draw the same base";
+/// Steps.
+pub const NEAR_FINDS: &str =
+    "manipulator.near-finds: of twelve short straight steps of the hand an arm of six joints or more can take one";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
+    JOINTS,
+    CENTRED,
+    CLEAR,
+    BASE_VARIED,
+    NEAR_FINDS,
     NAN,
     MAY_NOT_REACH,
     PAIRS,
@@ -200,6 +218,7 @@ pub fn check_manipulator<M: Manipulator>(
         trial.links()?;
         trial.hand()?;
         trial.pairs()?;
+        trial.pairs_part()?;
         trial.inverse()?;
         trial.line()?;
         trial.travel()?;

@@ -13,6 +13,7 @@ use crate::tabletop::{Tabletop, TabletopState};
 
 mod claims;
 mod contacts;
+mod contract;
 mod hand;
 mod held;
 mod modes;
@@ -65,10 +66,15 @@ pub const DECLARED: &str =
 /// The fingers.
 pub const GAP: &str = "tabletop.gap: the fingers open between 0 and their widest gap";
 
+/// Contracts.
+pub const CONTRACT: &str = "tabletop.contract: an instance of one of the standard primitives keeps its contract: what of the robot moves, what is in the hand, and whether objects at rest move";
+/// Lifts.
+pub const TAKES: &str = "tabletop.takes: what is taken up moves, by a millimetre at least";
+
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
     ONE_WAY, DECLARED, GAP, INSIDE, FINGERS, HELD_RIGID, STILL, SUPPORT, RAY, TURN, CONTACT, TOUCH, ATTACH, PICK_YAW,
-    RELEASE, MODES, EXEMPT, STRAIGHT, RETREAT,
+    RELEASE, MODES, EXEMPT, STRAIGHT, RETREAT, CONTRACT, TAKES,
 ];
 
 /// How exactly instances keep to their lines.
@@ -135,7 +141,8 @@ pub fn check_tabletop_instance<M: Manipulator>(
         trial.held()?;
         trial.pushed()?;
         trial.claims()?;
-        trial.hand()
+        trial.hand()?;
+        trial.contract()
     };
     check().map_err(|broken: Broken| {
         let broken = broken.of(format_args!("instance {:?}", instance.primitive));

@@ -10,7 +10,9 @@ use darrt_core::laws::Broken;
 pub use darrt_core::testing::broken::Case;
 
 mod bench;
+mod contracts;
 mod grasps;
+mod hands;
 mod instances;
 mod inverses;
 mod jacobians;
@@ -30,6 +32,8 @@ pub fn cases() -> Vec<Case> {
         pushes::cases(),
         moments::cases(),
         grasps::cases(),
+        hands::cases(),
+        contracts::cases(),
     ]
     .concat()
 }

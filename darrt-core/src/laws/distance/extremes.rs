@@ -17,8 +17,8 @@ const PAIRS: usize = 16;
 /// In how many places the way of the robot is looked at closely, and how closely: single precision has no more digits.
 const FINE: u32 = 16;
 const FINE_SHARE: f64 = 1e-8;
-/// The first half of the robot's way is at least this part of all of it.
-const LEAST_SHARE: f64 = 0.01;
+/// The first half of the robot's way is at least this part of all of it; of a root it is 0.29.
+const LEAST_SHARE: f64 = 0.35;
 /// Into how many steps the way of the robot is cut.
 const STEPS: u32 = 128;
 
@@ -44,7 +44,8 @@ impl<D: Domain> Trial<'_, D> {
         }
         self.one_number_off(&mut rng)?;
         self.robot_half_way(&x.robot, &y)?;
-        self.objects_close(&mut rng)
+        self.objects_close(&mut rng)?;
+        self.in_metres(&x.robot, &y, &mut rng)
     }
 
     /// A state that meets the target but for one number.

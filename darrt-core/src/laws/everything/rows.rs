@@ -25,6 +25,8 @@ pub(super) struct Tally {
     pub(super) hit: AtomicU64,
     pub(super) reached: AtomicU64,
     pub(super) free: AtomicU64,
+    /// Propagations with instances of primitives that nobody knows.
+    pub(super) unknown: AtomicU64,
     /// Useful, and found a way, by what is still to be done.
     pub(super) kinds: [[AtomicU64; 2]; KINDS],
 }

@@ -3,7 +3,7 @@
 use rand::RngExt;
 
 use super::{
-    CLAMPED, CONTINUOUS, FINITE, KNOTS, LENGTH, MODE, MotionClaims, NAMED, PURE, START, TRAVEL, component_travel,
+    CLAMPED, CONTINUOUS, FINITE, KNOTS, LENGTH, MODE, MotionClaims, NAMED, PURE, START, TIGHT, TRAVEL, component_travel,
 };
 use crate::domain::Domain;
 use crate::laws::feed::{is_number, rng_of};
@@ -21,6 +21,9 @@ const STRETCHES: usize = 3;
 const INSTANT: f64 = 1e-12;
 /// Farther than this nothing travels in an instant, metres.
 const JUMP_M: f64 = 1e-6;
+/// By what factor, and by how many metres besides, a length may exceed what is travelled.
+const TOO_LONG: f64 = 100.0;
+const ALLOWED_M: f64 = 10.0;
 /// How far off the way between two knots the robot may be, of its length.
 const STRAIGHT_SHARE: f64 = 1e-3;
 /// Knots looked at, of those of a motion.
@@ -69,6 +72,7 @@ impl<D: Domain> Trial<'_, '_, D> {
         let looks = all(self.motion, self.from, ts, self.claims.looks);
         let states = self.along(&looks, &end)?;
         self.jumps(&looks, &states)?;
+        self.tight(&states)?;
         self.again(&looks, &states, &start)?;
         equal(CLAMPED, &self.at(-1.0, &end), &start).map_err(|broken| broken.at(-1.0))?;
         equal(CLAMPED, &self.at(2.0, &start), &end).map_err(|broken| broken.at(2.0))?;
@@ -128,6 +132,19 @@ impl<D: Domain> Trial<'_, '_, D> {
             states.push(here);
         }
         Ok(states)
+    }
+
+    /// A bound that is far too large holds as well, and makes whoever relies on it look a thousand times as often.
+    fn tight(&self, states: &[State<D>]) -> Result<(), Broken> {
+        let metres: f64 = states.windows(2).map(|pair| (self.claims.travel)(self.m, &pair[0], &pair[1])).sum();
+        let length = self.motion.length();
+        let text = || format!("length {length:?} m, {metres:?} m travelled");
+        ensure(
+            TIGHT,
+            length.is_nan() || length <= TOO_LONG * metres + ALLOWED_M,
+            text,
+            "at most a hundred times as long",
+        )
     }
 
     /// Halves the fastest stretches again and again, always towards the faster half.

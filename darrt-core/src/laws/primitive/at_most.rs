@@ -26,6 +26,7 @@ impl<D: Domain> Trial<'_, '_, D> {
                 self.moves(instance).map_err(of)?;
             }
             self.takes_along(instance, &here, &after).map_err(of)?;
+            self.holds(instance, &here, &after).map_err(of)?;
             self.mode_changes_at_hand(instance, &here, &after).map_err(of)?;
             if instance.reversible {
                 self.way_back(instance, &here, &after).map_err(of)?;

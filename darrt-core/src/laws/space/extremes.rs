@@ -11,7 +11,7 @@ use crate::random::{Purpose, stream};
 use crate::space::ComponentSpace;
 
 /// A tolerance is at most this part of the way between samples that are far apart.
-const TOLERANCE_SHARE: f64 = 0.01;
+const TOLERANCE_SHARE: f64 = 4e-3;
 /// Spaces smaller than this say nothing about their tolerance, metres.
 const POINT_M: f64 = 1e-4;
 /// Where along an interpolation small differences are looked at.
@@ -116,9 +116,11 @@ pub(super) fn hears<S: ComponentSpace>(space: &S, a: &S::Config) -> Result<(), B
         let value = |q: &S::Config| values(space, q).get(i).copied().unwrap_or(x);
         // An angle may be the same at both ends, but not in between.
         let middle = with(space, a, i, 0.5 * (value(&low) + value(&high)));
-        let others = [low, high, middle];
+        // Where the range has no end, a step says as much.
+        let steps = STEPS_HEARD.map(|step| with(space, a, i, x + step));
+        let others: Vec<S::Config> = [low, high, middle].into_iter().chain(steps).collect();
         let changes = others.iter().any(|q| (value(q) - x).abs() > HEARD && space.contains(q));
-        let is_heard = others.iter().any(|q| space.distance(a, q) > 0.0);
+        let is_heard = others.iter().any(|q| space.contains(q) && space.distance(a, q) > 0.0);
         let text = || format!("0 m from {a:?} to each of {others:?}");
         ensure(DEAF, is_heard || !changes, text, "a positive distance to one of them")
             .map_err(|broken| broken.of(format_args!("coordinate {i}")))?;
@@ -128,6 +130,8 @@ pub(super) fn hears<S: ComponentSpace>(space: &S, a: &S::Config) -> Result<(), B
 
 /// Changes of a coordinate that must be heard are larger than this: a quaternion may be bent by less.
 const HEARD: f64 = 0.02;
+/// Steps along a coordinate that are listened to besides the ends of its range.
+const STEPS_HEARD: [f64; 4] = [-3.0, -0.3, 0.3, 3.0];
 /// So many coordinates are listened to.
 const MOST_HEARD: usize = 24;
 

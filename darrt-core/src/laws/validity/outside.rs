@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use rand::{Rng, RngExt};
 
-use super::{BLAME_KIND, EXEMPTS, NAN, PURE, Trial, WITHOUT_ROBOT};
+use super::{BLAME_KIND, BLAME_PLACE, EXEMPTS, NAN, PURE, Trial, WITHOUT_ROBOT};
 use crate::domain::Domain;
 use crate::laws::feed::{
     beyond_face, components, count_of, elsewhere, everything, moved, piled, rng_of, spoilt_states,
@@ -31,6 +31,8 @@ const BORDERS: usize = 48;
 const HALVINGS: u32 = 14;
 /// How many blames are looked into.
 const BLAMES: usize = 3;
+/// So many collisions of several pairs of bodies do not all happen at the origin.
+const MANY_PLACES: usize = 6;
 /// How many states are asked again in which objects are in the way.
 const MET: usize = 6;
 /// How often something is put elsewhere to see whether it was to blame.
@@ -228,6 +230,16 @@ impl<D: Domain> Trial<'_, D> {
             ensure(WITHOUT_ROBOT, !differs, text, "the same")?;
             let is_stricter = here.is_err() && self.judge(state, &D::Contacts::default()).is_ok();
             ensure(WITHOUT_ROBOT, !is_stricter, || format!("{here:?}"), "free, as with the robot")?;
+            // Nor do they allow what objects may not do among themselves.
+            let with = self.judge(state, &D::Contacts::default()).err().filter(|blame| {
+                let is_of_objects = matches!(blame.kind, BlockKind::ObjectFixed | BlockKind::ObjectObject);
+                is_of_objects && self.m.carried(&state.mode).is_empty()
+            });
+            let text = || "free without the robot".to_owned();
+            let is_laxer = here.is_ok() && with.is_some();
+            let against = || with.as_ref().map_or_else(String::new, ToString::to_string);
+            ensure(WITHOUT_ROBOT, !is_laxer, text, "as with it")
+                .map_err(|broken| Broken { right: against().into(), ..broken })?;
         }
         Ok(())
     }
@@ -237,6 +249,7 @@ impl<D: Domain> Trial<'_, D> {
         let names: Vec<_> = objects.iter().map(|id| self.m.component_name(*id).into_owned()).collect();
         let robot = self.m.component_name(ComponentId::Robot).into_owned();
         let mut seen = 0;
+        let (mut places, mut is_told, mut pairs) = (0, false, BTreeSet::new());
         for state in states {
             let Err(blame) = self.judge(state, &D::Contacts::default()) else { continue };
             let both = [&*blame.first, &*blame.second];
@@ -244,19 +257,29 @@ impl<D: Domain> Trial<'_, D> {
             let is_robot = both.iter().any(|name| **name == *robot);
             let fits = match blame.kind {
                 BlockKind::RobotFixed | BlockKind::RobotItself => of_objects == 0,
-                BlockKind::RobotObject => of_objects < 2,
-                BlockKind::ObjectFixed => of_objects < 2 && !is_robot,
-                BlockKind::ObjectObject => !is_robot,
+                BlockKind::RobotObject => of_objects == 1,
+                BlockKind::ObjectFixed => of_objects == 1 && !is_robot,
+                BlockKind::ObjectObject => of_objects == 2,
+                // Two components that meet have a kind of their own.
+                BlockKind::Other => of_objects + usize::from(is_robot) < 2,
                 _ => true,
             };
             let text = || blame.to_string();
             ensure(BLAME_KIND, fits, text, "a kind that fits the names of the two bodies")?;
+            if is_collision(&blame) {
+                places += 1;
+                is_told |= blame.place != [0.0; 3];
+                pairs.insert(pair(&blame));
+            }
             if seen < BLAMES && is_collision(&blame) {
                 seen += 1;
                 self.is_to_blame(state, &blame, &objects, rng)?;
             }
         }
-        Ok(())
+        // One body may stand at the origin, but not all.
+        let is_open = places < MANY_PLACES || pairs.len() < 2;
+        let text = || format!("{places} of {places} collisions at [0.0, 0.0, 0.0]");
+        ensure(BLAME_PLACE, is_told || is_open, text, "where they meet")
     }
 
     /// Whoever the kind names is to blame: the same two bodies do not meet wherever it is put.

@@ -6,6 +6,8 @@ use super::Case;
 mod domains;
 mod goals;
 mod hangs;
+mod held;
+mod measures;
 mod motions;
 mod primitives;
 mod spaces;
@@ -28,6 +30,8 @@ pub(super) fn cases() -> Vec<Case> {
         wholes::cases(),
         strangers::cases(),
         ways::cases(),
+        measures::cases(),
+        held::cases(),
     ]
     .concat()
 }

@@ -38,7 +38,7 @@ pub(super) fn check(body: &Body, hand: &dyn Hand, grasp: &Grasp) -> Result<(), B
 }
 
 /// Points of the inner face of a pad, in the frame of the object.
-fn points(hand: &dyn Hand, grasp: &Grasp, gap_m: f64, side: f64) -> Vec<Point3<f64>> {
+pub(super) fn points(hand: &dyn Hand, grasp: &Grasp, gap_m: f64, side: f64) -> Vec<Point3<f64>> {
     let tip_m = hand.tip_beyond_tool_m(gap_m);
     let at = |along: f64, across: f64| {
         let in_tool =

@@ -60,7 +60,12 @@ fn strength<M: Manipulator>(robot: &M) -> Result<(), Broken> {
 fn hand<M: Manipulator>(robot: &M) -> Result<(), Broken> {
     let hand = robot.hand();
     let widest = hand.max_gap_m();
-    ensure(HAND, widest.is_finite() && widest > 0.0, || format!("widest gap {widest:?}"), "a finite positive gap")?;
+    ensure(
+        HAND,
+        (f64::MIN_POSITIVE..=1.0).contains(&widest),
+        || format!("widest gap {widest:?}"),
+        "positive, at most a metre",
+    )?;
     let half = hand.tip_half_width_m();
     ensure(HAND, half.is_finite() && half > 0.0, || format!("half width {half:?}"), "a finite positive width")?;
     for gap_m in [0.0, 0.5 * widest, widest] {

@@ -4,10 +4,10 @@ use darrt_core::laws::watch::entering;
 use darrt_core::laws::{Broken, ensure};
 use darrt_core::random::{Purpose, stream};
 use darrt_core::space::ComponentSpace;
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use rand::RngExt;
 
-use super::{MAY_NOT_REACH, NAN, TRAVEL_TIGHT, Trial, links::is_rigid};
+use super::{DURATION, MAY_NOT_REACH, NAN, TRAVEL_TIGHT, Trial, links::is_rigid};
 use crate::laws::tabletop::corners;
 use crate::manipulator::{Configuration, Manipulator};
 
@@ -17,8 +17,13 @@ const TIGHT: f64 = 100.0;
 const SLACK_M: f64 = 1e-3;
 /// Length of the short motion, as a part of the way to the other configuration.
 const SHORT: f64 = 0.02;
+/// Speeds of robots, metres per second.
+const FASTEST_M_PER_S: f64 = 20.0;
+const SLOWEST_M_PER_S: f64 = 1e-3;
+/// By what factor the straight way may take longer than its two halves.
+const LONGER: f64 = 1.1;
 /// Farther than any arm, metres.
-const FAR_M: f64 = 100.0;
+const FAR_M: f64 = 20.0;
 
 impl<M: Manipulator> Trial<'_, M> {
     pub(super) fn extremes(&self) -> Result<(), Broken> {
@@ -51,11 +56,14 @@ impl<M: Manipulator> Trial<'_, M> {
     }
 
     fn far_away(&self) -> Result<(), Broken> {
-        let mut tool = self.robot.world_from_tool(self.a);
-        tool.translation.x += FAR_M;
-        entering("may_reach");
-        let may = self.robot.may_reach(&self.a.base, &tool);
-        ensure(MAY_NOT_REACH, !may, || format!("true for {:?}", tool.translation.vector.as_slice()), "false")
+        for direction in [Vector3::x(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
+            let mut tool = self.robot.world_from_tool(self.a);
+            tool.translation.vector += FAR_M * direction;
+            entering("may_reach");
+            let may = self.robot.may_reach(&self.a.base, &tool);
+            ensure(MAY_NOT_REACH, !may, || format!("true for {:?}", tool.translation.vector.as_slice()), "false")?;
+        }
+        Ok(())
     }
 
     /// The bound on a short motion against what it really does.
@@ -69,7 +77,29 @@ impl<M: Manipulator> Trial<'_, M> {
         entering("travel_m");
         let bound = self.robot.travel_m(self.a, &near, 0.0);
         let text = || format!("{bound:?} m for {farthest:?} m");
-        ensure(TRAVEL_TIGHT, bound <= TIGHT * farthest + SLACK_M, text, "at most a hundred times as far")
+        ensure(TRAVEL_TIGHT, bound <= TIGHT * farthest + SLACK_M, text, "at most a hundred times as far")?;
+        entering("link_travel_m");
+        let mut of_each = vec![0.0; self.robot.links().len()];
+        let held = self.robot.link_travel_m(self.a, &near, 0.0, &mut of_each);
+        let most = of_each.into_iter().fold(held, f64::max);
+        let text = || format!("link_travel_m {most:?} m for {farthest:?} m");
+        ensure(TRAVEL_TIGHT, most <= TIGHT * farthest + SLACK_M, text, "at most a hundred times as far")?;
+        self.speed(&near, farthest)
+    }
+
+    /// Seconds for what travels so far.
+    fn speed(&self, near: &Configuration<M::Joints>, farthest_m: f64) -> Result<(), Broken> {
+        entering("duration_s");
+        let seconds = self.robot.duration_s(self.a, near, false);
+        let bound_m = self.robot.travel_m(self.a, near, 0.0);
+        let text = || format!("{seconds:?} s for {farthest_m:?} m");
+        let fits = seconds >= farthest_m / FASTEST_M_PER_S && seconds <= bound_m / SLOWEST_M_PER_S + SLACK_M;
+        ensure(DURATION, fits || seconds.is_nan(), text, "seconds: between 1 mm/s and 20 m/s")?;
+        let half = self.space.interpolate(self.a, self.b, 0.5);
+        let [whole, first, second] =
+            [(self.a, self.b), (self.a, &half), (&half, self.b)].map(|(a, b)| self.robot.duration_s(a, b, false));
+        let text = || format!("{whole:?} s, but {first:?} and {second:?} s by way of the middle");
+        ensure(DURATION, whole <= LONGER * (first + second) + SLACK_M, text, "not longer")
     }
 
     /// Every joint at one end of its range.

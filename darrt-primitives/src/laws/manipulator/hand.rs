@@ -1,15 +1,24 @@
 //! Do the links of the hand, the facts about it and the weights of the joints speak of one robot, in metres?
 
 use darrt_core::laws::{Broken, ensure};
-use nalgebra::{Isometry3, Point3};
+use darrt_geom::body::{Body, Part};
+use darrt_geom::oracle::{PosedBody, intersections};
+use darrt_geom::shape::Shape;
+use nalgebra::{Isometry3, Point3, Translation3, Vector3};
 
 use super::travel::directions;
-use super::{ARM_MOVES, GAP_METRES, TIPS, Trial, WEIGHTS};
+use super::{ARM_MOVES, CENTRED, CLEAR, GAP_METRES, JOINTS, TIPS, Trial, WEIGHTS};
 use crate::laws::tabletop::corners;
 use crate::manipulator::{Configuration, LinkGroup, Manipulator};
 
 /// How far the links of the fingers may reach beyond the tips, or the tips beyond the links, metres.
 const TIP_SLACK_M: f64 = 0.05;
+/// By what factor tips may be wider or narrower than the links of the fingers.
+const WIDTH_FACTOR: f64 = 20.0;
+/// How far off the middle between the fingers the tool may be, metres: shapes are rounded.
+const CENTRE_SLACK_M: f64 = 0.015;
+/// So far ahead of the tips there is nothing of the hand, metres.
+const AHEAD_M: f64 = 0.1;
 /// What the links of the fingers may lack to the gap, metres: shapes are rounded.
 const SPAN_SLACK_M: f64 = 0.005;
 /// Share of the difference of two gaps by which the fingers may move more or less: some move on arcs.
@@ -26,6 +35,10 @@ impl<M: Manipulator> Trial<'_, M> {
         self.arm_moves()?;
         self.gap_is_in_metres()?;
         self.tips()?;
+        self.widths()?;
+        self.centred()?;
+        self.clear()?;
+        self.joints()?;
         self.weights()
     }
 
@@ -91,6 +104,82 @@ impl<M: Manipulator> Trial<'_, M> {
             let holds = reach_m.is_infinite() || (reach_m - tips_m).abs() <= TIP_SLACK_M;
             let text = || format!("tips {tips_m:?} m beyond the tool, links {reach_m:?} m, gap {gap_m:?} m");
             ensure(TIPS, holds, text, "the same, within 5 cm")?;
+        }
+        Ok(())
+    }
+
+    /// Tips and pads are as wide and as long as the links of the fingers, but for a factor that no shape explains.
+    fn widths(&self) -> Result<(), Broken> {
+        let points = self.finger_corners(self.gaps_m[0]);
+        if points.is_empty() {
+            return Ok(());
+        }
+        let extent = |axis: usize| {
+            let all = points.iter().map(|point| point[axis]);
+            let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+            high - low
+        };
+        let hand = self.robot.hand();
+        let (width_m, links_m) = (2.0 * hand.tip_half_width_m(), extent(2));
+        let text = || format!("tips {width_m:?} m wide, links {links_m:?} m");
+        let is_near = (1.0 / WIDTH_FACTOR..=WIDTH_FACTOR).contains(&(width_m / links_m));
+        ensure(TIPS, is_near, text, "the same, within a factor of twenty")?;
+        let (pad_m, finger_m) = (hand.pad_length_m(), extent(0));
+        let text = || format!("pads {pad_m:?} m long, links {finger_m:?} m");
+        ensure(TIPS, pad_m <= finger_m + TIP_SLACK_M, text, "no longer, within 5 cm")
+    }
+
+    /// The fingers on both sides of the tool are as far from it.
+    fn centred(&self) -> Result<(), Broken> {
+        for gap_m in [self.gaps_m[0], self.gaps_m[1], self.robot.hand().max_gap_m()] {
+            let points = self.finger_corners(gap_m);
+            for (axis, slack_m) in [(1, CENTRE_SLACK_M), (2, 0.0)] {
+                let all = points.iter().map(|point| point[axis]);
+                let [low, high] =
+                    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+                let holds = points.is_empty()
+                    || if axis == 1 { (low + high).abs() <= 2.0 * slack_m } else { low <= 0.0 && high >= 0.0 };
+                let text =
+                    || format!("fingers from {low:?} to {high:?} m along the tool's axis {axis}, gap {gap_m:?} m");
+                ensure(CENTRED, holds, text, "the tool midway")?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Where something is grasped there is room for it.
+    fn clear(&self) -> Result<(), Broken> {
+        let hand = self.robot.hand();
+        let gap_m = hand.max_gap_m();
+        let tip_m = hand.tip_beyond_tool_m(gap_m);
+        let (from_m, to_m) = (tip_m - 0.5 * hand.pad_length_m(), tip_m + AHEAD_M);
+        let half = Vector3::new(0.5 * (to_m - from_m), 0.3 * gap_m, 0.6 * hand.tip_half_width_m());
+        let unusable =
+            |error: &dyn std::fmt::Display| Broken::new(CLEAR, error.to_string(), "a hand that can be placed");
+        let shape = Shape::cuboid(half).map_err(|error| unusable(&error))?;
+        let probe = Body::new("room between the tips", vec![Part::centred(shape)]).map_err(|error| unusable(&error))?;
+        let tool = self.robot.world_from_tool(self.a);
+        let middle = tool * Translation3::new(0.5 * (from_m + to_m), 0.0, 0.0);
+        let poses = self.poses(self.a, gap_m);
+        let links = self.links_of(LinkGroup::Hand).filter_map(|link| {
+            Some(PosedBody { body: &self.robot.links().get(link)?.body, world_from_body: *poses.get(link)? })
+        });
+        let all: Vec<_> = std::iter::once(PosedBody { body: &probe, world_from_body: middle }).chain(links).collect();
+        let found = intersections(&all, &|i, j| i != 0 && j != 0).map_err(|error| unusable(&error))?;
+        let Some(hit) = found.first() else { return Ok(()) };
+        let name = all.get(hit.first.max(hit.second)).map_or("a link", |posed| &*posed.body.name);
+        Err(Broken::new(CLEAR, format!("{name} between the tips or ahead of them"), "room for what is grasped"))
+    }
+
+    /// A joint alone moves the tool or a link.
+    fn joints(&self) -> Result<(), Broken> {
+        let before = (self.robot.world_from_tool(self.a), self.poses(self.a, self.gaps_m[0]));
+        for joint in 0..self.a.arm.as_ref().len() {
+            let mut moved = *self.a;
+            moved.arm.as_mut().iter_mut().skip(joint).take(1).for_each(|value| *value += SMALL);
+            let after = (self.robot.world_from_tool(&moved), self.poses(&moved, self.gaps_m[0]));
+            ensure(JOINTS, after != before, || "nothing moves".to_owned(), "the tool, or a link")
+                .map_err(|broken| broken.of(format_args!("joint {joint}")))?;
         }
         Ok(())
     }

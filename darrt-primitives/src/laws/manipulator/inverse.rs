@@ -3,12 +3,16 @@
 use darrt_core::laws::{Broken, at_most, ensure, equal};
 use nalgebra::Isometry3;
 
-use super::{BASE_FOR, INVERSE_LIMITS, INVERSE_POSE, MAY_REACH, NEAR_SELF, PURE, SEEDED, Trial, same_pose};
+use super::{
+    BASE_FOR, BASE_VARIED, INVERSE_LIMITS, INVERSE_POSE, MAY_REACH, NEAR_SELF, PURE, SEEDED, Trial, same_pose,
+};
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mobile_arm_space::difference;
 
 /// How many solutions are drawn for each pose.
 const DRAWS: u64 = 4;
+/// And how many bases.
+const BASES: u64 = 24;
 
 impl<M: Manipulator> Trial<'_, M> {
     pub(super) fn inverse(&self) -> Result<(), Broken> {
@@ -66,6 +70,14 @@ impl<M: Manipulator> Trial<'_, M> {
         ensure(BASE_FOR, is_place, || format!("{base:?}"), "finite, yaw in [-pi, pi]")?;
         let _ = draw(1);
         equal(SEEDED, &draw(0), &base).map_err(|broken| broken.of("base_for"))?;
+        let mut differs = false;
+        for attempt in 1..BASES {
+            let other = draw(attempt);
+            let is_place = other.iter().all(|x| x.is_finite()) && other[2].abs() <= std::f64::consts::PI;
+            ensure(BASE_FOR, is_place, || format!("{other:?}"), "finite, yaw in [-pi, pi]")?;
+            differs |= other != base;
+        }
+        ensure(BASE_VARIED, differs, || format!("{BASES} times {base:?}"), "different ones")?;
         self.drawn(&base, tool)
     }
 

@@ -1,27 +1,35 @@
 //! Following straight lines of the hand.
 
-use darrt_core::laws::{Broken, at_most};
+use darrt_core::laws::{Broken, at_most, ensure};
 use darrt_core::space::ComponentSpace;
 use nalgebra::{Isometry3, Translation3, Vector3};
 
-use super::{LINE_BOW, LINE_STEP, Trial};
+use super::{LINE_BOW, LINE_STEP, NEAR_FINDS, Trial};
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mobile_arm_space::difference;
+
+/// Joints of an arm that can bring its hand to any pose.
+const FREEDOM: usize = 6;
+/// Length of the steps of which one at least can be taken, metres.
+const SHORT_M: f64 = 1e-3;
 
 impl<M: Manipulator> Trial<'_, M> {
     /// From both configurations, along the axes of the world both ways, as far as the arm reaches.
     pub(super) fn line(&self) -> Result<(), Broken> {
+        let mut is_found = self.a.arm.as_ref().len() < FREEDOM;
         for q in [self.a, self.b] {
             let tool = self.robot.world_from_tool(q);
             for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
                 for direction in [axis, -axis] {
+                    let first = shifted(&tool, &(direction * SHORT_M));
+                    is_found = is_found || self.robot.inverse_near(&q.base, &first, &q.arm).is_some();
                     self.follow(q, &tool, &direction).map_err(|broken| {
                         broken.of(format_args!("line from {:?} towards {:?}", q.arm, direction.as_slice()))
                     })?;
                 }
             }
         }
-        Ok(())
+        ensure(NEAR_FINDS, is_found, || "none".to_owned(), "one of twelve steps")
     }
 
     fn follow(

@@ -1,14 +1,17 @@
 //! Are all pairs of links named that can collide?
 
 use darrt_core::laws::{Broken, ensure};
+use darrt_core::space::ComponentSpace;
 use darrt_geom::oracle::{PosedBody, intersections, nearest};
 use nalgebra::Isometry3;
 
-use super::{SELF_PAIRS, Trial, gap};
+use super::{PAIRS, SELF_PAIRS, Trial, gap};
 use crate::manipulator::{Configuration, Manipulator};
 
 /// So many joints between two links make them more than neighbours.
 const NEIGHBOURS: usize = 4;
+/// A pair that overlaps in so many configurations always does.
+const CONFIGURATIONS: usize = 12;
 /// Links that are farther apart than this do not merely graze each other, metres.
 const APART_M: f64 = 0.01;
 /// A relative pose that changes by less has not changed, metres and radians.
@@ -52,6 +55,41 @@ impl<M: Manipulator> Trial<'_, M> {
             }
         }
         Ok(())
+    }
+
+    /// No pair overlaps in each of many configurations: then every configuration would be in collision.
+    pub(super) fn pairs_part(&self) -> Result<(), Broken> {
+        let robot = self.robot;
+        let mut rng = self.rng(7);
+        let mut always: Vec<(usize, usize)> = robot.self_pairs().to_vec();
+        for i in 0..CONFIGURATIONS {
+            let q = match i {
+                0 => *self.a,
+                1 => *self.b,
+                _ => self.space.sample(&mut rng),
+            };
+            let poses = self.poses(&Configuration { base: [0.0; 3], ..q }, self.robot.hand().max_gap_m() * 0.5);
+            let bodies: Vec<_> = robot
+                .links()
+                .iter()
+                .zip(&poses)
+                .map(|(link, pose)| PosedBody { body: &link.body, world_from_body: *pose })
+                .collect();
+            let is_left = |i: usize, j: usize| always.contains(&(i, j)) || always.contains(&(j, i));
+            let found = intersections(&bodies, &|i, j| !is_left(i, j));
+            let found = found.map_err(|error| Broken::new(PAIRS, error.to_string(), "links that can be placed"))?;
+            let hits: Vec<_> = found.iter().map(|hit| (hit.first, hit.second)).collect();
+            always.retain(|(i, j)| hits.contains(&(*i, *j)) || hits.contains(&(*j, *i)));
+            if always.is_empty() {
+                return Ok(());
+            }
+        }
+        let names: Vec<_> = always.iter().map(|(i, j)| [self.link_name(*i), self.link_name(*j)]).collect();
+        Err(Broken::new(
+            PAIRS,
+            format!("{names:?} overlap in {CONFIGURATIONS} of {CONFIGURATIONS} configurations"),
+            "apart in some",
+        ))
     }
 
     /// The poses of all links, the base at the origin, with one joint after the other at its value in `b`; the first are

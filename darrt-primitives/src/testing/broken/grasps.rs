@@ -10,10 +10,14 @@ use rand::{Rng, RngExt};
 
 use super::{Case, unusable};
 use crate::grasp::footprint::Footprint;
+use crate::grasp::hold::PadContact;
 use crate::grasp::overhead::OverheadGrasps;
 use crate::grasp::{Grasp, GraspFamily, GraspKind, Grip};
 use crate::laws::check_grasps;
-use crate::laws::grasp::{APPROACH, BETWEEN, CONTACT, GAPS, GRID, KIND, OPEN, OVERHANG, POSE, REACH, SEEDED, VARIED};
+use crate::laws::grasp::{
+    APPROACH, BETWEEN, CONTACT, COVERS, DEPTH, FLUSH, GAPS, GRID, KIND, OPEN, OVERHANG, PADS, POSE, REACH, SEEDED,
+    VARIED,
+};
 use crate::length_range::LengthRange;
 use crate::testing::gantry::{MAX_GAP_M, TIP_BEYOND_TOOL_M, TIP_HALF_WIDTH_M};
 
@@ -27,6 +31,8 @@ struct Family {
     needs_overhang: bool,
     /// The bound, if another than the honest one.
     reach_m: Option<f64>,
+    /// What it tells of the pads.
+    pads: fn(&OverheadGrasps, &Grasp) -> Option<PadContact>,
 }
 
 impl GraspFamily for Family {
@@ -41,6 +47,10 @@ impl GraspFamily for Family {
 
     fn needs_overhang(&self) -> bool {
         self.needs_overhang
+    }
+
+    fn pads(&self, grasp: &Grasp) -> Option<PadContact> {
+        (self.pads)(&self.honest, grasp)
     }
 
     fn tool_reach_m(&self) -> f64 {
@@ -71,8 +81,14 @@ fn check(change: impl FnOnce(&mut Family)) -> Result<(), Broken> {
     let honest = OverheadGrasps::new(Footprint::Disc { radius }, height, 0.03, grip).map_err(unusable)?;
     let shape = Shape::cylinder(radius, 0.5 * height).map_err(unusable)?;
     let body = Body::single("tin", shape).map_err(unusable)?;
-    let mut family =
-        Family { honest, change: |grasp, _| grasp, grid: |grid| grid, needs_overhang: false, reach_m: None };
+    let mut family = Family {
+        honest,
+        change: |grasp, _| grasp,
+        grid: |grid| grid,
+        needs_overhang: false,
+        reach_m: None,
+        pads: GraspFamily::pads,
+    };
     change(&mut family);
     check_grasps(&family, &body, &Plates, darrt_core::testing::broken::seed())
 }
@@ -91,7 +107,7 @@ fn case(name: &'static str, wrong: &'static str, law: &'static str, broken: fn()
 }
 
 pub(super) fn cases() -> Vec<Case> {
-    [gaps(), poses()].concat()
+    [gaps(), poses(), turns()].concat()
 }
 
 fn gaps() -> Vec<Case> {
@@ -208,6 +224,70 @@ fn poses() -> Vec<Case> {
                         kind: GraspKind::Overhead { azimuth: std::f64::consts::FRAC_PI_2 },
                     }
                 };
+            })
+        }),
+    ]
+}
+
+/// Turned about an axis of the tool, and it says so.
+fn turned(grasp: Grasp, axis: Vector3<f64>, by_rad: f64) -> Grasp {
+    let grasp = moved(grasp, Isometry3::rotation(axis * by_rad));
+    let opening = grasp.object_from_tool.rotation * Vector3::y();
+    Grasp { kind: GraspKind::Overhead { azimuth: opening.y.atan2(opening.x) }, ..grasp }
+}
+
+/// Grasps of a box, whose sides are flat.
+fn cuboid(change: fn(Grasp, &mut dyn Rng) -> Grasp) -> Result<(), Broken> {
+    let grip = Grip { open_gap: 0.095, tip_ahead: TIP_BEYOND_TOOL_M, ..Grip::default() };
+    let footprint = Footprint::Box { size_x: 0.05, size_y: 0.16 };
+    let honest = OverheadGrasps::new(footprint, 0.06, 0.03, grip).map_err(unusable)?;
+    let shape = Shape::cuboid(Vector3::new(0.025, 0.08, 0.03)).map_err(unusable)?;
+    let body = Body::single("box", shape).map_err(unusable)?;
+    let family =
+        Family { honest, change, grid: |grid| grid, needs_overhang: false, reach_m: None, pads: GraspFamily::pads };
+    check_grasps(&family, &body, &Plates, darrt_core::testing::broken::seed())
+}
+
+fn turns() -> Vec<Case> {
+    vec![
+        Case {
+            name: "rolled by ten degrees",
+            wrong: "an azimuth that is rounded to whole decades of degrees",
+            law: FLUSH,
+            broken: || cuboid(|grasp, _| turned(grasp, Vector3::x(), 0.17)),
+            honest: || cuboid(|grasp, _| grasp),
+        },
+        case("deeper than the table", "the depth is that of a higher tin", DEPTH, || {
+            check(|family| {
+                family.change = |grasp, _| moved(grasp, Isometry3::translation(0.06, 0.0, 0.0));
+                family.reach_m = Some(0.2);
+            })
+        }),
+        case("leans far over", "the hand comes from above, it says", KIND, || {
+            drawn(|grasp, _| turned(grasp, Vector3::y(), 0.7))
+        }),
+        case("from above is from the side", "a kind copied from another family", KIND, || {
+            drawn(|grasp, _| Grasp { kind: GraspKind::Side { azimuth: 0.0, flipped: false }, ..grasp })
+        }),
+        case("a grid of one", "the first of the grid is enough for a test", COVERS, || {
+            check(|family| family.grid = |grid| grid.into_iter().take(1).collect())
+        }),
+        case("the same again and again", "an index that is not counted up", GRID, || {
+            check(|family| {
+                family.grid = |grid| grid.first().map_or_else(Vec::new, |first| vec![*first; grid.len()]);
+            })
+        }),
+        case("pads in millimetres", "the data sheet has them", PADS, || {
+            check(|family| {
+                family.pads = |honest, grasp| {
+                    let pads = honest.pads(grasp)?;
+                    Some(PadContact { size_m: pads.size_m.map(|metres| 1e3 * metres), ..pads })
+                };
+            })
+        }),
+        case("pads of no number", "the mean of no patches", PADS, || {
+            check(|family| {
+                family.pads = |honest, grasp| Some(PadContact { spin_arm_m: f64::NAN, ..honest.pads(grasp)? });
             })
         }),
     ]

@@ -14,7 +14,7 @@ use crate::laws::feed::count_of;
 use crate::laws::watch::entering;
 use crate::laws::{
     Broken, check_component_space, check_distance, check_domain, check_goal, check_nearest, check_partial,
-    check_sampler, check_sampler_covers, check_space_covers,
+    check_sampler, check_sampler_covers, check_sampler_learns, check_space_covers,
 };
 use crate::laws::{distance, domain, goal, nearest, partial, sampler, space};
 use crate::sample::Sampler;
@@ -231,7 +231,8 @@ fn samplers<D: Domain>(world: &World<D>) -> Vec<Plan<D>> {
             };
             let once = move |world: &World<D>, _: &mut Row| -> Result<(), Broken> {
                 let Some(sampler) = sampler_of(world, index) else { return Ok(()) };
-                check_sampler_covers(&*world.m, sampler, &*goal_of(world), DRAWS, world.seed)
+                check_sampler_covers(&*world.m, sampler, &*goal_of(world), DRAWS, world.seed)?;
+                check_sampler_learns(&*world.m, sampler, &*goal_of(world), &world.subjects.start, world.seed)
             };
             let name = if index == 0 { "sampler".to_owned() } else { format!("sampler {index}") };
             Plan::new(name, sampler::LAWS.len(), cases, case).finally(once)

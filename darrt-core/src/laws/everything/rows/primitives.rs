@@ -19,6 +19,8 @@ use crate::state::State;
 
 /// Parameters of an instance at which the contact with its object must be allowed.
 const TS: [f64; 4] = [0.2, 0.5, 0.8, 0.95];
+/// How many other states and targets are tried for a primitive that is of no use.
+const RETRIES: usize = 4;
 /// A primitive that found so many ways of which none was free finds none that is.
 const MOST_BLOCKED: u64 = 100;
 /// A primitive that was useful so often and never found a way finds none at all.
@@ -37,8 +39,18 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
         let Some(primitive) = world.subjects.primitives.get(index) else { return Ok(()) };
         let (m, subjects) = (&*world.m, &world.subjects);
         let mut rng = rng_of_case(number);
-        let from = world.state(&mut rng, level);
-        let to = world.target(&from, &mut rng, level);
+        let mut from = world.state(&mut rng, level);
+        let mut to = world.target(&from, &mut rng, level);
+        // What is useful rarely, with something in the hand say, is looked for.
+        for _ in 0..RETRIES {
+            let about = || format!("useful of {}, from &{from:?} to &{to:?}", primitive.name());
+            entering("useful");
+            if asking(about, || guarded(PANICS, || primitive.useful(m, &from, &to)))? {
+                break;
+            }
+            from = world.state(&mut rng, level);
+            to = world.target(&from, &mut rng, level);
+        }
         let excuse = subjects.excuse.as_deref();
         let excuse = excuse.map(|excuse| move |m: &D, a: &_, to: &_, b: &_| excuse(m, a, to, b));
         let travel = |m: &D, a: &_, b: &_| match &subjects.travel {
@@ -58,6 +70,12 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
             Tried::Propagated(instances) => {
                 Tally::count(&counted.hit);
                 Tally::count(&counted.reached);
+                let is_known = |instance: &crate::motion::Instance<D>| {
+                    subjects.primitives.iter().any(|primitive| primitive.id() == instance.primitive)
+                };
+                if !instances.iter().all(is_known) {
+                    Tally::count(&counted.unknown);
+                }
                 if let Some(validity) = &subjects.validity {
                     let (mut here, mut is_free) = (from.clone(), true);
                     for instance in instances {
@@ -81,6 +99,10 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
         let calls = many_calls(world, index, &tally)?;
         let [tried, hit, reached] = [&tally.tried, &tally.hit, &tally.reached].map(Tally::get);
         row.cases = calls;
+        let unknown = Tally::get(&tally.unknown);
+        if unknown > 0 {
+            row.warn(format!("{unknown} propagations had instances of primitives that were not given"));
+        }
         if hit == 0 {
             row.warn(format!("`useful` was false in {tried} of {tried} calls"));
         } else if reached == 0 {

@@ -82,9 +82,15 @@ fn domains() -> Vec<Case> {
         case("one way travel", "uphill counts twice", TRAVEL_BETWEEN_SYMMETRIC, || {
             domain(&Bench { travel_between: |a, b| (b[0] - a[0]).max(2.0 * (a[0] - b[0])), ..Bench::default() })
         }),
-        case("squared travel", "the square of the way between two objects", TRAVEL_BETWEEN_TRIANGLE, || {
-            domain(&Bench { travel_between: |a, b| (a[0] - b[0]).powi(2), ..Bench::default() })
-        }),
+        case(
+            "far ways are dear",
+            "what is farther than a metre counts two and a half times",
+            TRAVEL_BETWEEN_TRIANGLE,
+            || {
+                let dear = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs().max(2.5 * (a[0] - b[0]).abs() - 1.5);
+                domain(&Bench { travel_between: dear, ..Bench::default() })
+            },
+        ),
         case("travel by a counter", "breaks ties with noise of its own", PURE, || {
             domain(&Bench {
                 travel_between: |a, b| {

@@ -1,0 +1,75 @@
+//! What the contract of a standard primitive permits.
+
+use darrt_core::laws::{Broken, ensure};
+use darrt_core::state::ObjectId;
+
+use super::{CONTRACT, TAKES, Trial};
+use crate::contract::{HandUse, MovingPart, ObjectRule};
+use crate::manipulator::Manipulator;
+use crate::primitive::STANDARD;
+use crate::tabletop::TabletopState;
+
+/// What is taken up moves by more than this, metres.
+const LEAST_M: f64 = 1e-3;
+
+impl<M: Manipulator> Trial<'_, M> {
+    pub(super) fn contract(&self) -> Result<(), Broken> {
+        let Some((_, contract)) = STANDARD.iter().find(|(id, _)| *id == self.instance.primitive) else { return Ok(()) };
+        let states = || self.looks.iter().map(|look| (look.t, &look.state)).chain([(1.0, &self.end)]);
+        for (t, state) in states() {
+            let stays = match contract.moves {
+                MovingPart::Base => state.robot.arm == self.from.robot.arm,
+                MovingPart::Arm => state.robot.base == self.from.robot.base,
+            };
+            let text = || format!("{:?}, from {:?}", state.robot, self.from.robot);
+            ensure(
+                CONTRACT,
+                stays,
+                text,
+                match contract.moves {
+                    MovingPart::Base => "the arm keeps its joints",
+                    MovingPart::Arm => "the base stands",
+                },
+            )
+            .map_err(|broken| broken.at(t))?;
+        }
+        let held = |state: &TabletopState<M>| state.mode.held().map(|held| held.object);
+        let (before, during, after) = (held(self.from), held(&self.during), held(&self.end));
+        let fits = match contract.hand {
+            HandUse::Empty => during.is_none() && after.is_none(),
+            HandUse::Takes => before.is_none() && during.is_some() && after == during,
+            HandUse::Carries => during.is_some() && before == during && after == during,
+            HandUse::LetsGo => during.is_some() && before == during && after.is_none(),
+        };
+        let text = || format!("{before:?} before, {during:?} meanwhile and {after:?} after in the hand");
+        ensure(
+            CONTRACT,
+            fits,
+            text,
+            match contract.hand {
+                HandUse::Empty => "nothing in the hand",
+                HandUse::Takes => "nothing at first, then an object",
+                HandUse::Carries => "an object all along",
+                HandUse::LetsGo => "an object, let go at the end",
+            },
+        )?;
+        for id in (0..self.m.movables().len()).map(ObjectId::new) {
+            let moves = self.from.object(id) != self.end.object(id);
+            let is_pushed = moves && during != Some(id);
+            let text = || format!("{} moves at rest", self.name(id));
+            ensure(CONTRACT, !is_pushed || contract.object != ObjectRule::Rests, text, "at rest, or in the hand")?;
+        }
+        match during.filter(|_| contract.hand == HandUse::Takes) {
+            Some(id) => self.is_taken(id),
+            None => Ok(()),
+        }
+    }
+
+    fn is_taken(&self, id: ObjectId) -> Result<(), Broken> {
+        let places = [self.from, &self.end].map(|state| state.object(id).map(|pose| pose.translation.vector));
+        let [Some(before), Some(after)] = places else { return Ok(()) };
+        let metres = (after - before).norm();
+        ensure(TAKES, metres >= LEAST_M, || format!("{metres:?} m"), "a millimetre at least")
+            .map_err(|broken| broken.of(self.name(id)))
+    }
+}
