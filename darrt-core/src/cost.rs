@@ -2,10 +2,14 @@
 //!
 //! [`TravelCost`] is for domains that know nothing of speeds.
 
+use rand::Rng;
+
 use crate::domain::Domain;
 use crate::error::{Error, in_range};
+use crate::improve::pieces::{pieces, states};
 use crate::motion::Instance;
-use crate::plan::Plan;
+use crate::partial::PartialState;
+use crate::plan::{Plan, Step};
 use crate::state::State;
 
 /// Seconds of execution.
@@ -43,15 +47,52 @@ pub trait ExecutionCost<D: Domain>: Send + Sync {
     fn between(&self, _m: &D, _from: &State<D>, _to: &State<D>) -> f64 {
         0.0
     }
+
+    /// Seconds that a manipulation, which begins at `entry` and leads to `exit`, costs more because of where the robot comes
+    /// from: `last` is where the manipulation before it ended, or the start. A robot that has been driven since it pushed
+    /// something knows less well where that is.
+    ///
+    /// Finite, never negative, and pure.
+    fn arrival(&self, _m: &D, _last: &State<D>, _entry: &State<D>, _exit: &State<D>) -> f64 {
+        0.0
+    }
+
+    /// Objects where they may be left on the way of a manipulation that takes them from where they are in `from` to where they
+    /// are in `to`: with another manipulation in the plan the next [`arrival`](Self::arrival) may cost less. `None` if there is
+    /// nothing to propose.
+    fn detour(&self, _m: &D, _from: &State<D>, _to: &State<D>, _rng: &mut dyn Rng) -> Option<PartialState<D>> {
+        None
+    }
 }
 
-/// Seconds of the steps of `plan` together.
+/// Seconds of the steps of `plan` together, with those of its [arrivals](ExecutionCost::arrival).
 pub fn plan_seconds<D: Domain>(cost: &dyn ExecutionCost<D>, m: &D, plan: &Plan<D>) -> f64 {
     let mut here = plan.start().clone();
-    let mut seconds = 0.0;
+    let mut seconds = arrival_seconds(cost, m, plan.start(), plan.steps());
     for step in plan.steps() {
         seconds += cost.seconds(m, &step.instance, &here, step.until);
         step.instance.motion.at_into(m, step.until, &mut here);
+    }
+    seconds
+}
+
+/// Seconds that the manipulations of a chain cost more because of where the robot comes from.
+pub(crate) fn arrival_seconds<D: Domain>(
+    cost: &dyn ExecutionCost<D>,
+    m: &D,
+    start: &State<D>,
+    steps: &[Step<D>],
+) -> f64 {
+    let states = states(m, start, steps);
+    let mut last = 0;
+    let mut seconds = 0.0;
+    for piece in pieces(m, steps, &states) {
+        if let (Some(last), Some(entry), Some(exit)) =
+            (states.get(last), states.get(piece.entry), states.get(piece.until))
+        {
+            seconds += cost.arrival(m, last, entry, exit);
+        }
+        last = piece.until;
     }
     seconds
 }

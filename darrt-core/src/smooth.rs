@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use rand::{Rng, RngExt};
 
-use crate::cost::ExecutionCost;
+use crate::cost::{ExecutionCost, arrival_seconds};
 use crate::domain::Domain;
 use crate::extend::{ExtendOptions, Extender};
 use crate::local_repair::LocalRepair;
@@ -251,12 +251,18 @@ impl<D: Domain> Smoother<'_, D> {
         self.left = self.left.saturating_sub(1);
         let Some(timed_steps) = self.rewritten(from, to, rng) else { return false };
         let is_better = timed_steps.len() <= self.timed_steps.len()
-            && seconds(&timed_steps) < seconds(&self.timed_steps) - LEAST_GAIN_S;
+            && seconds(&timed_steps) < seconds(&self.timed_steps) - LEAST_GAIN_S
+            && self.arrivals_s(&timed_steps) <= self.arrivals_s(&self.timed_steps);
         if is_better {
             self.timed_steps = timed_steps;
             self.has_gained = true;
         }
         is_better
+    }
+
+    fn arrivals_s(&self, timed_steps: &[TimedStep<D>]) -> f64 {
+        let steps: Vec<_> = timed_steps.iter().map(|timed_step| timed_step.step.clone()).collect();
+        arrival_seconds(self.cost, self.extender.problem.domain(), self.start, &steps)
     }
 
     /// All steps, those between the cuts new; `None` if the new ones do not arrive, or are no shorter.

@@ -45,6 +45,7 @@ pub mod object_space;
 pub mod primitive;
 pub mod push;
 mod segment;
+pub mod success;
 pub mod tabletop;
 pub mod target_query;
 #[cfg(feature = "testing")]

@@ -16,6 +16,9 @@ use crate::shorten::joined;
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ObjectId, State};
 
+/// How many detours are tried for every other draw, where the cost asks for one.
+const DETOURS: usize = 6;
+
 /// What one draw makes of the hope for the next one between the same placements.
 const HOPE_LEFT: f64 = 0.6;
 /// How much less is hoped for where manipulations are to be left out: when the plan was made shorter that was tried.
@@ -38,9 +41,12 @@ struct Draw {
 }
 
 impl<D: Domain> Roadmap<'_, D> {
-    /// The draw that promises most; `false` if there is none.
+    /// The draw that promises most, and, where the cost asks for one, detours besides; `false` if there is none.
     pub(super) fn draw(&mut self, rng: &mut dyn Rng) -> bool {
         let Some(chain) = self.cheapest(false) else { return false };
+        for _ in 0..DETOURS {
+            self.detour(&chain, rng);
+        }
         let Some(draw) = self.most_promising(&chain) else { return false };
         let Some(key) = self.key(&chain, draw) else { return false };
         *self.tries.entry(key).or_default() += 1;
@@ -132,7 +138,7 @@ impl<D: Domain> Roadmap<'_, D> {
     }
 
     /// The objects that have been moved by then, where they are.
-    fn placement(&self, at: &State<D>) -> PartialState<D> {
+    pub(super) fn placement(&self, at: &State<D>) -> PartialState<D> {
         let m = self.m();
         let start = self.known.get(START).map(|start| &start.exit);
         let ids = (0..at.objects.len()).map(ObjectId::new);

@@ -106,7 +106,7 @@ impl<D: Domain> Roadmap<'_, D> {
         };
         let (m, validity) = (self.m(), self.extender.problem.validity());
         let mut here = exit;
-        let (mut expected_s, mut verdict) = (0.0, Verdict::Free);
+        let (mut expected_s, mut verdict) = (self.arrival_s(a, b), Verdict::Free);
         let mut blocked = Vec::with_capacity(steps.len());
         for step in &steps {
             let turns = self.may_turn(step);
@@ -144,6 +144,7 @@ impl<D: Domain> Roadmap<'_, D> {
         let (steps, blocked) = (link.steps.clone().unwrap_or_default(), link.blocked.clone());
         match self.around(exit, steps, &blocked, rng) {
             Some((seconds, steps)) => {
+                let seconds = seconds + self.arrival_s(a, b);
                 if let Some(link) = self.link_mut(a, b) {
                     (link.seconds, link.steps, link.verdict) = (seconds, Some(steps), Verdict::Free);
                 }

@@ -34,7 +34,7 @@ impl Kind {
 }
 
 /// The states of a chain that begins at `here`: the one before every step, and the end.
-pub(super) fn states<D: Domain>(m: &D, here: &State<D>, steps: &[Step<D>]) -> Vec<State<D>> {
+pub(crate) fn states<D: Domain>(m: &D, here: &State<D>, steps: &[Step<D>]) -> Vec<State<D>> {
     let mut states = Vec::with_capacity(steps.len() + 1);
     states.push(here.clone());
     for step in steps {
@@ -47,17 +47,17 @@ pub(super) fn states<D: Domain>(m: &D, here: &State<D>, steps: &[Step<D>]) -> Ve
 
 /// One part of a chain, by the indices of its steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Piece {
+pub(crate) struct Piece {
     /// The way to where the manipulation begins: `from .. entry`.
-    pub(super) from: usize,
+    pub(crate) from: usize,
     /// Approach and change: `entry .. until`.
-    pub(super) entry: usize,
+    pub(crate) entry: usize,
     /// One past the change.
-    pub(super) until: usize,
+    pub(crate) until: usize,
 }
 
 /// The manipulations of a chain with the ways to them; what follows on the last one is in no piece.
-pub(super) fn pieces<D: Domain>(m: &D, steps: &[Step<D>], states: &[State<D>]) -> Vec<Piece> {
+pub(crate) fn pieces<D: Domain>(m: &D, steps: &[Step<D>], states: &[State<D>]) -> Vec<Piece> {
     let kinds: Vec<Kind> =
         steps.iter().zip(states.iter().zip(states.iter().skip(1))).map(|(s, (a, b))| Kind::of(m, s, a, b)).collect();
     let mut pieces = Vec::new();

@@ -216,14 +216,15 @@ impl<'a, D: Domain> Roadmap<'a, D> {
     fn add(&mut self, entry: State<D>, steps: Vec<Step<D>>, exit: State<D>) -> Id {
         let (begins_on, ends_on) = (self.leaf_of(&entry), self.leaf_of(&exit));
         let id = self.known.len();
-        let guess = |to: Id, from: &State<D>, at: &State<D>| {
-            let seconds = self.any.ratio() * self.cost.between(self.extender.problem.domain(), from, at);
+        let guess = |to: Id, from: &State<D>, (at, end): (&State<D>, &State<D>)| {
+            let m = self.extender.problem.domain();
+            let seconds = self.any.ratio() * self.cost.between(m, from, at) + self.cost.arrival(m, from, at, end);
             Link { to, seconds, verdict: Verdict::Open, steps: None, blocked: Vec::new() }
         };
         let behind = self.known.iter().enumerate().skip(1).filter(|(_, next)| next.begins_on == ends_on);
-        let links = behind.map(|(to, next)| guess(to, &exit, &next.entry)).collect();
+        let links = behind.map(|(to, next)| guess(to, &exit, (&next.entry, &next.exit))).collect();
         let before = self.known.iter().enumerate().filter(|(_, last)| last.ends_on == begins_on && !last.is_arrival);
-        let to_it: Vec<_> = before.map(|(at, last)| (at, guess(id, &last.exit, &entry))).collect();
+        let to_it: Vec<_> = before.map(|(at, last)| (at, guess(id, &last.exit, (&entry, &exit)))).collect();
         for (at, link) in to_it {
             if let Some(last) = self.known.get_mut(at) {
                 last.links.push(link);
@@ -238,10 +239,16 @@ impl<'a, D: Domain> Roadmap<'a, D> {
     /// The link from `a` to `b` goes by `steps`.
     pub(super) fn link(&mut self, a: Id, b: Id, steps: Vec<Step<D>>) {
         let Some(exit) = self.known.get(a).map(|a| &a.exit) else { return };
-        let seconds = self.seconds(exit, &steps);
+        let seconds = self.seconds(exit, &steps) + self.arrival_s(a, b);
         if let Some(link) = self.link_mut(a, b) {
             (link.seconds, link.steps) = (seconds, Some(steps));
         }
+    }
+
+    /// Seconds that `b` costs more because the robot comes from `a`.
+    pub(super) fn arrival_s(&self, a: Id, b: Id) -> f64 {
+        let (Some(a), Some(b)) = (self.known.get(a), self.known.get(b)) else { return 0.0 };
+        self.cost.arrival(self.m(), &a.exit, &b.entry, &b.exit)
     }
 
     pub(super) fn link_of(&self, a: Id, b: Id) -> Option<&Link<D>> {

@@ -1,19 +1,24 @@
 //! A plan that was found takes less time, and stays a plan.
 
 use darrt_core::budget::{Interrupt, Stop};
-use darrt_core::cost::{TravelCost, plan_seconds};
+use darrt_core::cost::{ExecutionCost, TravelCost, plan_seconds};
+use darrt_core::domain::Domain;
 use darrt_core::extend::{ExtendOptions, Extender};
 use darrt_core::improve::{ImproveOptions, Improvement, improve};
 use darrt_core::laws::check_planner;
+use darrt_core::motion::Instance;
 use darrt_core::observe::Silent;
 use darrt_core::partial::PartialState;
 use darrt_core::plan::{Plan, Step};
 use darrt_core::problem::Problem;
 use darrt_core::search::Strategy;
 use darrt_core::solve::{SolveOptions, solve};
+use darrt_core::space::ComponentSpace;
+use darrt_core::state::State;
 use darrt_core::testing::puck::{Setup, paper_strategy, problems};
 use darrt_core::testing::strategies::{config, seeds};
 use proptest::prelude::*;
+use rand::{Rng, RngExt};
 
 use super::support::{World, id, options, rng};
 
@@ -64,6 +69,52 @@ fn found_plans_never_take_longer_and_often_less() {
         .unwrap();
     let [runs, less] = gains.into_inner();
     assert!(8 * less > runs, "of {runs} plans {less} take less time");
+}
+
+/// Travel, and as much as a push of 3 m where the robot comes from farther than 0.3 m to a puck that it must hit well.
+struct NearBy;
+
+impl ExecutionCost<World> for NearBy {
+    fn seconds(&self, m: &World, instance: &Instance<World>, from: &State<World>, until: f64) -> f64 {
+        TravelCost::default().seconds(m, instance, from, until)
+    }
+
+    fn arrival(&self, m: &World, last: &State<World>, entry: &State<World>, _: &State<World>) -> f64 {
+        if m.robot().distance(&last.robot, &entry.robot) > 0.3 { 3.0 } else { 0.0 }
+    }
+
+    fn detour(
+        &self,
+        m: &World,
+        from: &State<World>,
+        to: &State<World>,
+        rng: &mut dyn Rng,
+    ) -> Option<PartialState<World>> {
+        let index = (0..to.objects.len()).find(|index| from.objects[*index] != to.objects[*index])?;
+        let [x, y] = to.objects[index];
+        let beside = [x + rng.random_range(-0.5..0.5), y + rng.random_range(-0.5..0.5)];
+        Some(PartialState::anywhere(m).with_object(id(index), beside))
+    }
+}
+
+/// What arriving costs is part of what a plan costs, and of what is saved.
+#[test]
+fn plans_are_improved_in_what_arriving_costs_too() {
+    let ready = [problems::two_pucks, problems::four_pucks].map(|make| make().unwrap());
+    let cheap = |cost: fn() -> Box<dyn ExecutionCost<World>>| Improvement { cost: cost(), ..improvement(6, 2) };
+    let mut arrivals_s = [0.0; 2];
+    for (seed, problem) in (0..6).flat_map(|seed| ready.iter().map(move |problem| (seed, problem))) {
+        let m = problem.domain();
+        let outcome = solve(problem, &paper_strategy().unwrap(), &options(seed, 5000), &mut Silent);
+        let plan = outcome.solution.unwrap().plan().clone();
+        let careful = improved(problem, &plan, &cheap(|| Box::new(NearBy)), seed);
+        let fast = improved(problem, &plan, &cheap(|| Box::new(TravelCost::default())), seed);
+        assert!(plan_seconds(&NearBy, m, &careful) <= plan_seconds(&NearBy, m, &plan) + 1e-9);
+        for (sum_s, plan) in arrivals_s.iter_mut().zip([&careful, &fast]) {
+            *sum_s += plan_seconds(&NearBy, m, plan) - seconds(problem, plan);
+        }
+    }
+    assert!(arrivals_s[0] < arrivals_s[1], "{arrivals_s:?}");
 }
 
 /// Manipulations that lead nowhere are left out by draws alone.

@@ -144,7 +144,8 @@ pub struct PlanOptions {
     /// [default: as the problem says]
     #[arg(long, value_name = "NAME")]
     pub distance: Option<String>,
-    /// What improving a plan saves: execution-time, or another cost that this program knows [default: execution-time]
+    /// What improving a plan saves: execution-time, success (a robot that does not look again, with errors after every drive),
+    /// or another cost that this program knows [default: execution-time]
     #[arg(long, value_name = "NAME", conflicts_with = "no_improve")]
     pub cost: Option<String>,
     /// Which search; the attempts of `portfolio` take all of them in turn

@@ -23,6 +23,7 @@ use darrt_primitives::primitive::straight_line_arm_transit::StraightLineArmTrans
 use darrt_primitives::primitive::{
     ARM_RIGID_TRANSFER, ARM_TRANSIT, PICK, PLACE, PUSH, STANDARD, STRAIGHT_LINE_ARM_TRANSIT,
 };
+use darrt_primitives::success::Success;
 use darrt_primitives::tabletop::Tabletop;
 use serde::de::DeserializeOwned;
 
@@ -168,7 +169,8 @@ impl<M: TaskRobot> Registry<M> {
             ("euclidean", Arc::new(|| Box::new(Euclidean))),
             ("exact-tour", Arc::new(|| Box::new(ExactTour))),
         ];
-        registry.costs = vec![("execution-time", Arc::new(|| Box::new(ExecutionTime)))];
+        registry.costs =
+            vec![("execution-time", Arc::new(|| Box::new(ExecutionTime))), ("success", Arc::new(|| Box::new(Success)))];
         registry
     }
 
