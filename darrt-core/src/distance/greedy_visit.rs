@@ -104,8 +104,7 @@ fn nearest_open<D: Domain>(
     open: &[(ObjectId, f64)],
     last: Option<ObjectId>,
 ) -> Option<(usize, f64)> {
-    let distances =
-        open.iter().enumerate().map(|(slot, (id, _))| (slot, *id, travel_between(m, from, to, last, *id)));
+    let distances = open.iter().enumerate().map(|(slot, (id, _))| (slot, *id, travel_between(m, from, to, last, *id)));
     distances.min_by(|a, b| a.2.total_cmp(&b.2).then(a.1.cmp(&b.1))).map(|(slot, _, travel)| (slot, travel))
 }
 
