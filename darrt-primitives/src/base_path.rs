@@ -232,13 +232,7 @@ enum Trial {
 }
 
 /// A short way along a lattice that costs less than `below_m` there, as long as not more than `looks` poses have been looked at.
-fn way_along(
-    level: Level,
-    [start, goal]: [&[f64; 3]; 2],
-    sight: &mut Sight<'_>,
-    below_m: f64,
-    looks: usize,
-) -> Trial {
+fn way_along(level: Level, [start, goal]: [&[f64; 3]; 2], sight: &mut Sight<'_>, below_m: f64, looks: usize) -> Trial {
     let (Some(start), Some(goal)) = (sight.stop(start), sight.stop(goal)) else { return Trial::Hopeless };
     let stops = [start, goal];
     let step_rad = level.step_deg.to_radians();
