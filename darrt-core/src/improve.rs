@@ -46,7 +46,7 @@ pub struct ImproveOptions {
 
 impl Default for ImproveOptions {
     fn default() -> Self {
-        Self { draws_per_step: 3, draws_per_iteration: 0.5, care_rounds: 3, draws_per_round: 16, shortcuts_per_step: 1 }
+        Self { draws_per_step: 3, draws_per_iteration: 0.5, care_rounds: 3, draws_per_round: 24, shortcuts_per_step: 1 }
     }
 }
 

@@ -14,9 +14,13 @@ use crate::plan::Step;
 use crate::shorten::joined;
 use crate::state::{ComponentId, ObjectId, State};
 
-/// What every degree of [care](crate::validity::Validity::most_care) is worth with which a motion could be free and is not,
-/// seconds.
+/// What the first degree of [care](crate::validity::Validity::most_care) is worth that a motion gives up, seconds.
 const CARE_S: f64 = 6.0;
+
+/// What so many degrees are worth, seconds: every further one as much more as the first.
+fn worth_s(lost: usize) -> f64 {
+    CARE_S * 0.5 * (lost * (lost + 1)) as f64
+}
 
 impl<D: Domain> Roadmap<'_, D> {
     /// Finds the ways of the cheapest chain, and supposes that what is blocked on them finds a way around. `None` if there is
@@ -63,7 +67,7 @@ impl<D: Domain> Roadmap<'_, D> {
         let Some(known) = self.known.get_mut(id) else { return };
         match lost {
             Some(lost) => {
-                known.careless_s = CARE_S * lost as f64;
+                known.careless_s = worth_s(lost);
                 known.seconds += known.careless_s;
                 known.verdict = Verdict::Free;
             }
@@ -173,7 +177,7 @@ impl<D: Domain> Roadmap<'_, D> {
                 takes_s = self.cost.seconds(m, &step.instance, &here, step.until);
                 self.around.learn(straight_s, takes_s);
                 self.any.learn(straight_s, takes_s);
-                careless_s += CARE_S * lost as f64;
+                careless_s += worth_s(lost);
             }
             seconds += takes_s;
             step.instance.motion.at_into(m, step.until, &mut here);
