@@ -77,8 +77,7 @@ pub(crate) fn validate_step<D: Domain>(
     let (mut care, mut may_go_around) = (most, true);
     // The way around that was found, and with how much care it is free.
     let mut known: Option<(Instance<D>, usize)> = None;
-    loop {
-        let Some(blame) = blocked_by(care, &step.instance, step.until) else { break };
+    while let Some(blame) = blocked_by(care, &step.instance, step.until) {
         if let Some(r) = turns.filter(|_| may_go_around && known.is_none()) {
             let around = r.repair(m, validity, care, &step.instance, here, rng);
             may_go_around = around.as_ref().err() != Some(&NoWay::WithAnyCare);

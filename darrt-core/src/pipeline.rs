@@ -5,7 +5,7 @@
 //! | retrace | the same manipulations without what does not lead to the goal | [`shorten`](crate::shorten) |
 //! | improve | less time to carry it out, all motions judged | [`mod@improve`](crate::improve) |
 //! | mend | motions that were taken as free are judged; from one that is blocked the plan goes on another way | [`shorten`](crate::shorten) |
-//! | validate_steps | what was found is judged as it is | [`validate_steps`](crate::lazy_validation::validate_steps) |
+//! | `validate_steps` | what was found is judged as it is | [`validate_steps`](crate::lazy_validation::validate_steps) |
 //! | prove | the verifier replays it | [`verify`](crate::verify) |
 //!
 //! The first stage that ends in a plan which the verifier accepts is the last one.
