@@ -25,6 +25,7 @@ use crate::domain::Domain;
 use crate::extend::{ExtendOptions, Extender};
 use crate::plan::Plan;
 use crate::smooth::smooth;
+use draw::Hope;
 use roadmap::{Roadmap, START};
 
 /// How many draws are made between two looks at what the cheapest chain costs.
@@ -37,13 +38,17 @@ pub struct ImproveOptions {
     pub draws_per_step: usize,
     /// More of them, for every iteration of the search; at least 0.
     pub draws_per_iteration: f64,
+    /// How often what gives up [care](crate::validity::Validity::most_care) is drawn anew once the cheapest plan has been judged,
+    pub care_rounds: usize,
+    /// and with how many extensions each time.
+    pub draws_per_round: usize,
     /// Extensions that look for shortcuts, for every step of the better plan.
     pub shortcuts_per_step: usize,
 }
 
 impl Default for ImproveOptions {
     fn default() -> Self {
-        Self { draws_per_step: 3, draws_per_iteration: 0.5, shortcuts_per_step: 1 }
+        Self { draws_per_step: 3, draws_per_iteration: 0.5, care_rounds: 3, draws_per_round: 24, shortcuts_per_step: 1 }
     }
 }
 
@@ -99,11 +104,24 @@ pub fn improve<D: Domain>(
         if draw % DRAWS_BETWEEN == 0 {
             roadmap.suppose_cheapest(rng)?;
         }
-        if !roadmap.draw(rng) {
+        if !roadmap.draw(Hope::LessTime, rng) {
             break;
         }
     }
-    let chain = roadmap.free_cheapest(rng)?;
+    let mut chain = roadmap.free_cheapest(rng)?;
+    // How much care a chain keeps is known once it has been judged.
+    for _ in 0..options.care_rounds {
+        if extender.interrupt.stop().is_some() || roadmap.careless_s(&chain) <= 0.0 {
+            break;
+        }
+        roadmap.tries.clear();
+        for _ in 0..options.draws_per_round {
+            if !roadmap.draw(Hope::MoreCare, rng) {
+                break;
+            }
+        }
+        chain = roadmap.free_cheapest(rng)?;
+    }
     let plan = Plan::new(start.clone(), roadmap.steps(&chain)?);
     let shortcuts = options.shortcuts_per_step * plan.steps().len();
     Some(smooth(&extender, &**cost, &plan, shortcuts, rng).unwrap_or(plan))

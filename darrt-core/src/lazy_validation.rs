@@ -70,17 +70,23 @@ pub(crate) fn validate_step<D: Domain>(
     }
     let turns = local_repair.filter(|r| r.is_free_to_turn(m, &step.instance));
     let most = turns.map_or(0, |_| validity.most_care());
+    let blocked_by = |care: usize, instance: &Instance<D>, until: f64| {
+        let free = validity.free_prefix_with(care, m, instance, here);
+        free.blame.filter(|_| free.fraction < until)
+    };
     let (mut care, mut may_go_around) = (most, true);
-    loop {
-        let free = validity.free_prefix_with(care, m, &step.instance, here);
-        let Some(blame) = free.blame.filter(|_| free.fraction < step.until) else { break };
-        let around = match turns.filter(|_| may_go_around) {
-            Some(r) => r.repair(m, validity, care, &step.instance, here, rng),
-            None => Err(NoWay::WithAnyCare),
-        };
-        may_go_around = around.as_ref().err() != Some(&NoWay::WithAnyCare);
-        let around = around.ok();
-        if let Some(around) = around.filter(|around| validity.free_prefix_with(care, m, around, here).blame.is_none()) {
+    // The way around that was found, and with how much care it is free.
+    let mut known: Option<(Instance<D>, usize)> = None;
+    while let Some(blame) = blocked_by(care, &step.instance, step.until) {
+        if let Some(r) = turns.filter(|_| may_go_around && known.is_none()) {
+            let around = r.repair(m, validity, care, &step.instance, here, rng);
+            may_go_around = around.as_ref().err() != Some(&NoWay::WithAnyCare);
+            known = around.ok().and_then(|around| {
+                let kept = (0..=care).rev().find(|care| blocked_by(*care, &around, 1.0).is_none())?;
+                Some((around, kept))
+            });
+        }
+        if let Some((around, _)) = known.take_if(|(_, kept)| *kept >= care) {
             step.instance = Arc::new(around);
             break;
         }

@@ -60,7 +60,8 @@ pub trait LocalRepair<D: Domain>: Send + Sync {
     fn is_free_to_turn(&self, m: &D, instance: &Instance<D>) -> bool;
 
     /// Another instance with the same ends as `instance`, which begins at `from` and is blocked with this `care`
-    /// ([`Validity::most_care`]).
+    /// ([`Validity::most_care`]). It keeps as much of this care as was found, which may be less; it is not asked for again
+    /// then.
     ///
     /// # Errors
     /// [`NoWay`] if the instance must go as it does (a push, an approach), or if no way was found with the effort allowed.

@@ -306,7 +306,12 @@ fn improvement_changes_the_plan_and_not_the_search() {
     let problem = problems::two_pucks().unwrap();
     for algorithm in Algorithm::ALL {
         let planned = |draws_per_step| {
-            let effort = ImproveOptions { draws_per_step, draws_per_iteration: 1.0, shortcuts_per_step: 4 };
+            let effort = ImproveOptions {
+                draws_per_step,
+                draws_per_iteration: 1.0,
+                shortcuts_per_step: 4,
+                ..ImproveOptions::default()
+            };
             let improve =
                 (draws_per_step > 0).then(|| Improvement { cost: Box::new(TravelCost::default()), options: effort });
             let strategy = Strategy { improve, ..paper_strategy().unwrap() };

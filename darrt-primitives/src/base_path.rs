@@ -84,6 +84,12 @@ const CELLS: f64 = 2e6;
 /// Expansions in which the goal must not turn out to be enclosed.
 const FROM_GOAL: usize = 100;
 
+/// A way along a lattice costs at most so many times what it does once it is short. HEURISTIC: eight directions alone cost a
+/// twelfth.
+const ON_LATTICE: f64 = 1.2;
+/// Poses that are looked at for a way with more room than the shortest one.
+const ROOMIER_LOOKS: usize = 10_000;
+
 /// What is added to the least margin, and how finely a drive is looked at, metres: the exact check then finds what it asks for.
 const SPARE_M: f64 = 5e-4;
 /// What looks nearer than the least margin by more than this looks nearer than it is, metres.
@@ -92,10 +98,11 @@ const DOUBT_M: f64 = 1e-4;
 impl BasePath {
     /// Poses of the base from that of `from`, the first, to `to`, the last, both bit for bit; straight drives lie between
     /// them, or those of a base that drives along its heading only. The arm, the objects and what is held stand as in `from`, whose mode is that on the way. Both ends are
-    /// clear with this [care](darrt_core::validity::Validity::most_care), and so is the way.
+    /// clear with this [care](darrt_core::validity::Validity::most_care); the way is clear, and keeps as much of this care as was
+    /// found on ways that are not much longer.
     ///
     /// # Errors
-    /// [`NoWay`] if none is found, or if it would be much longer than with less care.
+    /// [`NoWay::WithAnyCare`] if none is found.
     pub fn find<M: Manipulator>(
         &self,
         m: &Tabletop<M>,
@@ -103,56 +110,113 @@ impl BasePath {
         from: &TabletopState<M>,
         to: &[f64; 3],
     ) -> Result<Vec<[f64; 3]>, NoWay> {
-        let around = m.collision_scene();
-        let [wanted_m, least_margin_m] = around.drive_margins_m(care);
-        let plan = around.floor_plan();
-        let mut footprint = Footprint::new(m, from, plan, least_margin_m);
-        let mut least_m = least_margin_m + SPARE_M;
-        // What is exactly known to be clear may not look so from above.
-        let mut is_doubtful = plan.has_gaps;
-        for end in [&from.robot.base, to] {
-            is_doubtful |= footprint.forgive(end, least_margin_m - DOUBT_M);
+        m.collision_scene().with_worker(|worker| {
+            let mut finder = Finder { options: self, m, from, to, drives: Drives::new(m, from, worker) };
+            let shortest = finder.shortest().ok_or(NoWay::WithAnyCare)?;
+            for care in (1..=care).rev() {
+                if finder.is_clear(&shortest.poses, care) {
+                    break;
+                }
+                if let Some(roomier) = finder.roomier(care, &shortest) {
+                    return Ok(roomier);
+                }
+            }
+            Ok(shortest.poses)
+        })
+    }
+}
+
+/// Looks for ways between two poses.
+struct Finder<'a, M: Manipulator> {
+    options: &'a BasePath,
+    m: &'a Tabletop<M>,
+    from: &'a TabletopState<M>,
+    to: &'a [f64; 3],
+    drives: Drives<'a, M>,
+}
+
+/// The poses of a way, and what it would cost if there were room everywhere.
+#[derive(Debug, Clone, PartialEq)]
+struct Way {
+    poses: Vec<[f64; 3]>,
+    open_cost_m: f64,
+}
+
+impl<M: Manipulator> Finder<'_, M> {
+    /// The robot among the obstacles, and the terms of a way that keeps `margin_m` from them. What is exactly known to be clear
+    /// at the ends may not look so from above: that does not count. Was there such a thing?
+    fn sight_terms(&self, margin_m: f64) -> (Footprint, Terms, bool) {
+        let around = self.m.collision_scene();
+        let mut footprint = Footprint::new(self.m, self.from, around.floor_plan(), margin_m);
+        let mut least_m = margin_m + SPARE_M;
+        let mut is_doubtful = false;
+        for end in [&self.from.robot.base, self.to] {
+            is_doubtful |= footprint.forgive(end, margin_m - DOUBT_M);
             least_m = least_m.min(footprint.distance_m(end, least_m, f64::NEG_INFINITY));
         }
-        let [wanted_m, _] = around.drive_margins_m(around.most_care()).map(|margin| margin.max(wanted_m) + SPARE_M);
+        let [wanted_m, _] = around.drive_margins_m(around.most_care());
         let terms = Terms {
             least_m,
-            wanted_m,
+            wanted_m: wanted_m.max(margin_m) + SPARE_M,
             resolution_m: SPARE_M,
-            turn_m: self.turn_m,
-            tight: self.tight.max(1.0),
-            is_along_heading: m.manipulator().drives_along_heading(),
+            turn_m: self.options.turn_m,
+            tight: self.options.tight.max(1.0),
+            is_along_heading: self.m.manipulator().drives_along_heading(),
         };
-        let ends = [&from.robot.base, to];
-        around.with_worker(|worker| {
-            let mut drives = Drives::new(m, from, worker);
-            for level in LEVELS {
-                let looks = footprint.looks() + self.looks;
-                if !is_doubtful {
-                    let way = match way_along(level, ends, &mut Sight::new(&mut footprint, terms, None), looks) {
-                        Trial::PricedPath(way) => way,
-                        Trial::Hope => continue,
-                        Trial::Hopeless => break,
-                    };
-                    if is_clear(&way, |a, b| drives.is_clear(care, a, b)) {
-                        return Ok(way);
-                    }
-                    if care > 0 {
-                        return Err(NoWay::WithThisCare);
-                    }
+        (footprint, terms, is_doubtful)
+    }
+
+    /// Are all drives of a way clear?
+    fn is_clear(&mut self, way: &[[f64; 3]], care: usize) -> bool {
+        way.windows(2).all(|pair| matches!(pair, [a, b] if self.drives.is_clear(care, a, b)))
+    }
+
+    /// The cheapest way that keeps the least margins.
+    fn shortest(&mut self) -> Option<Way> {
+        let around = self.m.collision_scene();
+        let [_, least_m] = around.drive_margins_m(0);
+        let (mut footprint, terms, has_forgiven) = self.sight_terms(least_m);
+        let mut is_doubtful = around.floor_plan().has_gaps || has_forgiven;
+        let ends = [&self.from.robot.base, self.to];
+        for level in LEVELS {
+            let looks = footprint.looks() + self.options.looks;
+            if !is_doubtful {
+                match way_along(level, ends, &mut Sight::new(&mut footprint, terms, None), f64::INFINITY, looks) {
+                    Trial::Found(way) if self.is_clear(&way.poses, 0) => return Some(way),
                     // Seen from above it is clear, but not in space.
-                    is_doubtful = true;
-                }
-                let judge: &mut Judge<'_> = &mut |a, b| drives.is_clear(0, a, b);
-                match way_along(level, ends, &mut Sight::new(&mut footprint, terms, Some(judge)), looks) {
-                    Trial::PricedPath(way) if is_clear(&way, |a, b| drives.is_clear(care, a, b)) => return Ok(way),
-                    Trial::PricedPath(_) => return Err(NoWay::WithThisCare),
-                    Trial::Hope => {}
+                    Trial::Found(_) => is_doubtful = true,
+                    Trial::Hope => continue,
                     Trial::Hopeless => break,
                 }
             }
-            Err(NoWay::WithAnyCare)
-        })
+            let drives = &mut self.drives;
+            let judge: &mut Judge<'_> = &mut |a, b| drives.is_clear(0, a, b);
+            match way_along(level, ends, &mut Sight::new(&mut footprint, terms, Some(judge)), f64::INFINITY, looks) {
+                Trial::Found(way) if self.is_clear(&way.poses, 0) => return Some(way),
+                Trial::Hope => {}
+                Trial::Found(_) | Trial::Hopeless => break,
+            }
+        }
+        None
+    }
+
+    /// A way with this care that is not much longer than the shortest one.
+    fn roomier(&mut self, care: usize, shortest: &Way) -> Option<Vec<[f64; 3]>> {
+        let around = self.m.collision_scene();
+        let [margin_m, _] = around.drive_margins_m(care);
+        let (mut footprint, terms, has_forgiven) = self.sight_terms(margin_m);
+        let below_m = terms.tight * shortest.open_cost_m;
+        let drives = &mut self.drives;
+        let judge: &mut Judge<'_> = &mut |a, b| drives.is_clear(care, a, b);
+        let is_doubtful = around.floor_plan().has_gaps || has_forgiven;
+        let mut sight = Sight::new(&mut footprint, terms, is_doubtful.then_some(judge));
+        let [level, _] = LEVELS;
+        let ends = [&self.from.robot.base, self.to];
+        let way = match way_along(level, ends, &mut sight, ON_LATTICE * below_m, ROOMIER_LOOKS) {
+            Trial::Found(way) if way.open_cost_m <= below_m => way.poses,
+            _ => return None,
+        };
+        self.is_clear(&way, care).then_some(way)
     }
 }
 
@@ -160,20 +224,15 @@ impl BasePath {
 #[derive(Debug, Clone, PartialEq)]
 enum Trial {
     /// The poses of a way.
-    PricedPath(Vec<[f64; 3]>),
+    Found(Way),
     /// No way, but a finer lattice may have one.
     Hope,
     /// No way, nor a passage that is wide enough, or nearly.
     Hopeless,
 }
 
-/// Are all drives of a way clear?
-fn is_clear(way: &[[f64; 3]], mut judge: impl FnMut(&[f64; 3], &[f64; 3]) -> bool) -> bool {
-    way.windows(2).all(|pair| matches!(pair, [a, b] if judge(a, b)))
-}
-
-/// A short way along a lattice, as long as not more than `looks` poses have been looked at.
-fn way_along(level: Level, [start, goal]: [&[f64; 3]; 2], sight: &mut Sight<'_>, looks: usize) -> Trial {
+/// A short way along a lattice that costs less than `below_m` there, as long as not more than `looks` poses have been looked at.
+fn way_along(level: Level, [start, goal]: [&[f64; 3]; 2], sight: &mut Sight<'_>, below_m: f64, looks: usize) -> Trial {
     let (Some(start), Some(goal)) = (sight.stop(start), sight.stop(goal)) else { return Trial::Hopeless };
     let stops = [start, goal];
     let step_rad = level.step_deg.to_radians();
@@ -184,16 +243,24 @@ fn way_along(level: Level, [start, goal]: [&[f64; 3]; 2], sight: &mut Sight<'_>,
     let narrow = sight.narrow();
     // The other way round first, for a little while: mostly it is the goal that is enclosed, if one end is.
     let back = Bounds::straight(&lattice, start_place);
-    let mut outcome = Search::new(sight, &lattice, &back, step_rad, [goal, start]).run(FROM_GOAL, looks);
+    let mut outcome = Search::new(sight, &lattice, &back, step_rad, [goal, start]).below(below_m).run(FROM_GOAL, looks);
     if let Outcome::Found(way) = &mut outcome {
         way.reverse();
     }
     if outcome == Outcome::Stopped {
-        outcome = Search::new(sight, &lattice, &bounds, step_rad, stops).run(usize::MAX, looks);
+        outcome = Search::new(sight, &lattice, &bounds, step_rad, stops).below(below_m).run(usize::MAX, looks);
     }
     match outcome {
         Outcome::Found(way) => match shorten::shorten(sight, &way) {
-            Some(way) => Trial::PricedPath(refined(way, stops, sight, looks).poses()),
+            Some(way) => {
+                let poses = refined(way, stops, sight, looks).poses();
+                let open_m = |pair: &[[f64; 3]]| match pair {
+                    [a, b] => sight.open_cost_m(a, b),
+                    _ => 0.0,
+                };
+                let open_cost_m = poses.windows(2).map(open_m).sum();
+                Trial::Found(Way { poses, open_cost_m })
+            }
             None => Trial::Hope,
         },
         Outcome::Enclosed if sight.narrow() == narrow => Trial::Hopeless,

@@ -40,14 +40,25 @@ struct Draw {
     to: usize,
 }
 
+/// What is hoped for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Hope {
+    /// Less time.
+    LessTime,
+    /// More care: of the chain as it was judged only what costs seconds because care is given up is drawn anew.
+    MoreCare,
+}
+
 impl<D: Domain> Roadmap<'_, D> {
     /// The draw that promises most, and, where the cost asks for one, detours besides; `false` if there is none.
-    pub(super) fn draw(&mut self, rng: &mut dyn Rng) -> bool {
+    pub(super) fn draw(&mut self, hope: Hope, rng: &mut dyn Rng) -> bool {
         let Some(chain) = self.cheapest(false) else { return false };
-        for _ in 0..DETOURS {
-            self.detour(&chain, rng);
+        if hope == Hope::LessTime {
+            for _ in 0..DETOURS {
+                self.detour(&chain, rng);
+            }
         }
-        let Some(draw) = self.most_promising(&chain) else { return false };
+        let Some(draw) = self.most_promising(&chain, hope) else { return false };
         let Some(key) = self.key(&chain, draw) else { return false };
         *self.tries.entry(key).or_default() += 1;
         self.extend(&chain, draw, rng);
@@ -61,19 +72,24 @@ impl<D: Domain> Roadmap<'_, D> {
         Some((from.leaves()[1], (!to.is_arrival).then(|| to.leaves()[1])))
     }
 
-    fn most_promising(&self, chain: &[Id]) -> Option<Draw> {
+    fn most_promising(&self, chain: &[Id], hope: Hope) -> Option<Draw> {
+        let counts = |seconds: f64, careless_s: f64| match hope {
+            Hope::LessTime => seconds,
+            Hope::MoreCare => careless_s,
+        };
         // By place in the chain: the seconds up to its exit, and on to where the next one begins.
         let (mut until_s, mut onward_s) = (vec![0.0], Vec::new());
         let mut least_s = f64::INFINITY;
         let mut seconds = 0.0;
         for (a, b) in chain.iter().zip(chain.iter().skip(1)) {
             let next = self.known.get(*b)?;
-            seconds += self.link_of(*a, *b)?.seconds;
+            let (link, next_s) = (self.link_of(*a, *b)?, counts(next.seconds, next.careless_s));
+            seconds += counts(link.seconds, link.careless_s);
             onward_s.push(seconds);
-            seconds += next.seconds;
+            seconds += next_s;
             until_s.push(seconds);
             if !next.is_arrival {
-                least_s = least_s.min(next.seconds);
+                least_s = least_s.min(next_s);
             }
         }
         onward_s.push(seconds);

@@ -14,9 +14,13 @@ use crate::plan::Step;
 use crate::shorten::joined;
 use crate::state::{ComponentId, ObjectId, State};
 
-/// What every degree of [care](crate::validity::Validity::most_care) is worth with which a motion could be free and is not,
-/// seconds.
+/// What the first degree of [care](crate::validity::Validity::most_care) is worth that a motion gives up, seconds.
 const CARE_S: f64 = 6.0;
+
+/// What so many degrees are worth, seconds: every further one as much more as the first.
+fn worth_s(lost: usize) -> f64 {
+    CARE_S * 0.5 * (lost * (lost + 1)) as f64
+}
 
 impl<D: Domain> Roadmap<'_, D> {
     /// Finds the ways of the cheapest chain, and supposes that what is blocked on them finds a way around. `None` if there is
@@ -63,7 +67,8 @@ impl<D: Domain> Roadmap<'_, D> {
         let Some(known) = self.known.get_mut(id) else { return };
         match lost {
             Some(lost) => {
-                known.seconds += CARE_S * lost as f64;
+                known.careless_s = worth_s(lost);
+                known.seconds += known.careless_s;
                 known.verdict = Verdict::Free;
             }
             None => known.verdict = Verdict::Blocked,
@@ -143,26 +148,27 @@ impl<D: Domain> Roadmap<'_, D> {
         let Some(link) = self.link_of(a, b) else { return };
         let (steps, blocked) = (link.steps.clone().unwrap_or_default(), link.blocked.clone());
         match self.around(exit, steps, &blocked, rng) {
-            Some((seconds, steps)) => {
+            Some((seconds, careless_s, steps)) => {
                 let seconds = seconds + self.arrival_s(a, b);
                 if let Some(link) = self.link_mut(a, b) {
-                    (link.seconds, link.steps, link.verdict) = (seconds, Some(steps), Verdict::Free);
+                    (link.seconds, link.careless_s) = (seconds + careless_s, careless_s);
+                    (link.steps, link.verdict) = (Some(steps), Verdict::Free);
                 }
             }
             None => self.rule(a, b, Verdict::Blocked),
         }
     }
 
-    /// The steps with ways around what is blocked, and what they cost.
+    /// The steps with ways around what is blocked, their seconds, and what the care costs that they give up.
     fn around(
         &mut self,
         mut here: State<D>,
         mut steps: Vec<Step<D>>,
         blocked: &[bool],
         rng: &mut dyn Rng,
-    ) -> Option<(f64, Vec<Step<D>>)> {
+    ) -> Option<(f64, f64, Vec<Step<D>>)> {
         let m = self.m();
-        let mut seconds = 0.0;
+        let (mut seconds, mut careless_s) = (0.0, 0.0);
         for (step, is_blocked) in steps.iter_mut().zip(blocked) {
             let straight_s = self.cost.seconds(m, &step.instance, &here, step.until);
             let mut takes_s = straight_s;
@@ -172,12 +178,12 @@ impl<D: Domain> Roadmap<'_, D> {
                 takes_s = self.cost.seconds(m, &step.instance, &here, step.until);
                 self.around.learn(straight_s, takes_s);
                 self.any.learn(straight_s, takes_s);
-                takes_s += CARE_S * lost as f64;
+                careless_s += worth_s(lost);
             }
             seconds += takes_s;
             step.instance.motion.at_into(m, step.until, &mut here);
         }
-        Some((seconds, steps))
+        Some((seconds, careless_s, steps))
     }
 
     /// A way from the exit of `a` to the entry of `b`.

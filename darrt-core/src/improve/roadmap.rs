@@ -51,6 +51,8 @@ pub(super) struct Manipulation<D: Domain> {
     pub(super) steps: Vec<Step<D>>,
     pub(super) exit: State<D>,
     pub(super) seconds: f64,
+    /// Those of them that stand for care that is given up.
+    pub(super) careless_s: f64,
     pub(super) verdict: Verdict,
     pub(super) is_arrival: bool,
     links: Vec<Link<D>>,
@@ -62,6 +64,8 @@ pub(super) struct Manipulation<D: Domain> {
 pub(super) struct Link<D: Domain> {
     pub(super) to: Id,
     pub(super) seconds: f64,
+    /// Those of them that stand for care that is given up.
+    pub(super) careless_s: f64,
     pub(super) verdict: Verdict,
     /// `None`: it is guessed that there is one.
     pub(super) steps: Option<Vec<Step<D>>>,
@@ -219,7 +223,7 @@ impl<'a, D: Domain> Roadmap<'a, D> {
         let guess = |to: Id, from: &State<D>, (at, end): (&State<D>, &State<D>)| {
             let m = self.extender.problem.domain();
             let seconds = self.any.ratio() * self.cost.between(m, from, at) + self.cost.arrival(m, from, at, end);
-            Link { to, seconds, verdict: Verdict::Open, steps: None, blocked: Vec::new() }
+            Link { to, seconds, careless_s: 0.0, verdict: Verdict::Open, steps: None, blocked: Vec::new() }
         };
         let behind = self.known.iter().enumerate().skip(1).filter(|(_, next)| next.begins_on == ends_on);
         let links = behind.map(|(to, next)| guess(to, &exit, (&next.entry, &next.exit))).collect();
@@ -231,8 +235,19 @@ impl<'a, D: Domain> Roadmap<'a, D> {
             }
         }
         let seconds = self.seconds(&entry, &steps);
-        let (verdict, is_arrival) = (Verdict::Open, false);
-        self.known.push(Manipulation { entry, steps, exit, seconds, verdict, is_arrival, links, begins_on, ends_on });
+        let (careless_s, verdict, is_arrival) = (0.0, Verdict::Open, false);
+        self.known.push(Manipulation {
+            entry,
+            steps,
+            exit,
+            seconds,
+            careless_s,
+            verdict,
+            is_arrival,
+            links,
+            begins_on,
+            ends_on,
+        });
         id
     }
 
@@ -299,6 +314,16 @@ impl<'a, D: Domain> Roadmap<'a, D> {
     pub(super) fn cheapest(&self, certain: bool) -> Option<Vec<Id>> {
         let costs = self.costs(certain);
         chain_to(&costs, self.best_arrival(&costs)?)
+    }
+
+    /// What the care costs that a chain gives up, as far as it has been judged, seconds.
+    pub(super) fn careless_s(&self, chain: &[Id]) -> f64 {
+        let pairs = chain.iter().zip(chain.iter().skip(1));
+        let of = |(a, b): (&Id, &Id)| {
+            let link_s = self.link_of(*a, *b).map_or(0.0, |link| link.careless_s);
+            link_s + self.known.get(*b).map_or(0.0, |known| known.careless_s)
+        };
+        pairs.map(of).sum()
     }
 
     /// What a chain of vertices does, as far as its ways are known.

@@ -25,7 +25,8 @@ use super::support::{World, id, options, rng};
 const EXTEND: ExtendOptions = ExtendOptions { spacing_m: 0.1, max_depth: 20, defer: false, step_m: None };
 
 fn improvement(draws_per_step: usize, shortcuts_per_step: usize) -> Improvement<World> {
-    let options = ImproveOptions { draws_per_step, draws_per_iteration: 0.5, shortcuts_per_step };
+    let options =
+        ImproveOptions { draws_per_step, draws_per_iteration: 0.5, shortcuts_per_step, ..ImproveOptions::default() };
     Improvement { cost: Box::new(TravelCost::default()), options }
 }
 

@@ -209,7 +209,12 @@ fn no_effort_no_plan_and_none_when_nobody_waits() {
 
 fn smoothing(extend: ExtendOptions, attempts: usize) -> Strategy<World> {
     let extensions = if extend.defer { 50 } else { 0 };
-    let options = ImproveOptions { draws_per_step: 0, draws_per_iteration: 0.0, shortcuts_per_step: attempts };
+    let options = ImproveOptions {
+        draws_per_step: 0,
+        draws_per_iteration: 0.0,
+        shortcuts_per_step: attempts,
+        ..ImproveOptions::default()
+    };
     let improve = (attempts > 0).then(|| Improvement { cost: Box::new(cost()), options });
     Strategy { extend, shorten: ShortenOptions { extensions }, improve, ..paper_strategy().unwrap() }
 }

@@ -12,10 +12,21 @@ use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::Contacts;
 use crate::tabletop::{Tabletop, TabletopState};
 
-/// So far a straight drive goes between two looks at what is in the way, metres and radians, but for
-const LOOK_M: f64 = 0.15;
-/// so many parts at most.
-const MOST_LOOKS: f64 = 12.0;
+/// How often a straight drive is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Looks {
+    /// So far it goes between two looks at what is in the way, metres and radians, but for
+    every_m: f64,
+    /// so many parts at most.
+    parts: f64,
+}
+
+impl Looks {
+    /// Enough to tell what is mostly in the way of a folded arm.
+    pub(super) const FEW: Self = Self { every_m: 0.15, parts: 12.0 };
+    /// A hand above a table passes things that are thinner than few looks are apart.
+    pub(super) const MANY: Self = Self { every_m: 0.04, parts: 48.0 };
+}
 
 /// The straight drive of a robot whose base is clear at both ends.
 pub(super) struct Drive<'a, M: Manipulator> {
@@ -33,10 +44,10 @@ pub(super) struct Drive<'a, M: Manipulator> {
 
 impl<'a, M: Manipulator> Drive<'a, M> {
     /// From where the robot stands in `from` to `to`.
-    pub(super) fn new(m: &'a Tabletop<M>, from: &TabletopState<M>, to: &[f64; 3]) -> Self {
+    pub(super) fn new(m: &'a Tabletop<M>, from: &TabletopState<M>, to: &[f64; 3], looks: Looks) -> Self {
         let here = from.robot.base;
         let travel_m = (to[0] - here[0]).hypot(to[1] - here[1]) + turn(here[2], to[2]).abs();
-        let parts = (travel_m / LOOK_M).ceil().clamp(1.0, MOST_LOOKS);
+        let parts = (travel_m / looks.every_m).ceil().clamp(1.0, looks.parts);
         let shares = (1..).map(|i| f64::from(i) / parts).take_while(|share| *share < 1.0);
         let looks = shares.map(|share| m.robot().base().interpolate(&here, to, share)).collect();
         let probe = Probe::new(m, from, from.mode.clone());

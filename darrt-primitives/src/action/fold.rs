@@ -9,7 +9,8 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 
 use super::Chain;
-use super::drive::Drive;
+use super::drive::{Drive, Looks};
+use super::line;
 use super::width::Widths;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::Held;
@@ -33,6 +34,8 @@ const AHEAD_RAD: f64 = 0.4;
 const CARRIED_M: [f64; 2] = [0.35, 0.75];
 /// How much higher or lower than now an object is carried, metres.
 const CARRIED_RISE_M: f64 = 0.25;
+/// How much higher than it is the empty hand is carried above things, metres.
+const RAISED_M: f64 = 0.25;
 /// In how many parts a move of the arm is looked at for how far what is held leans.
 const LOOKS: u32 = 8;
 
@@ -71,40 +74,114 @@ pub(super) fn order<M: Manipulator>(
             choices.extend(drawn.find(|arm| !widths.is_wide(arm)).map(|arm| (Order::Through(arm), arm)));
         }
     }
-    let mut choices: Vec<_> = choices
-        .into_iter()
-        .map(|(order, arm)| (cost_m(m, from, target, &arm) * rng.random_range(1.0..1.0 + CHANCE), order, arm))
-        .collect();
-    choices.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // OPTIMIZATION: how wide the robot is with an arm is asked only of the arms that are looked at.
-    let mut wide: Vec<Option<bool>> = vec![None; choices.len()];
-    let mut drive = Drive::new(m, from, &target.base);
-    let stays = |arm: &M::Joints| {
-        held.is_none_or(|held| stays_level(m, &held, &from.robot.arm, arm) && stays_level(m, &held, arm, &target.arm))
+    let costed = |choices: Vec<(Order<M::Joints>, M::Joints)>, rng: &mut dyn Rng| {
+        let mut choices: Vec<_> = choices
+            .into_iter()
+            .map(|(order, arm)| (cost_m(m, from, target, &arm) * rng.random_range(1.0..1.0 + CHANCE), order, arm))
+            .collect();
+        choices.sort_by(|a, b| a.0.total_cmp(&b.0));
+        choices
     };
-    let mut fallback = None;
-    for care in [m.collision_scene().most_care(), 0] {
-        let mut cheapest = None;
-        for is_wide in [false, true] {
-            for ((_, order, arm), wide) in choices.iter().zip(&mut wide) {
-                if *wide.get_or_insert_with(|| widths.is_wide(arm)) != is_wide {
-                    continue;
-                }
-                fallback.get_or_insert(*order);
-                if !drive.fits(arm, care) || !stays(arm) {
-                    continue;
-                }
-                if drive.is_straight(care) {
-                    return *order;
-                }
-                cheapest.get_or_insert(*order);
-            }
-        }
-        if let Some(order) = cheapest {
-            return order;
+    let mut chooser =
+        Chooser { m, from, target, held, widths, drive: Drive::new(m, from, &target.base, Looks::FEW), fallback: None };
+    let most = m.collision_scene().most_care();
+    let mut choices = costed(choices, rng);
+    let mut cheapest = match chooser.best(&choices, most) {
+        Best::Straight(order) => return order,
+        Best::Fits(order) => Some(order),
+        Best::None => None,
+    };
+    // OPTIMIZATION: mostly they are not needed.
+    let raised = costed(raised(m, from, target), rng);
+    chooser.drive = Drive::new(m, from, &target.base, Looks::MANY);
+    match chooser.best(&raised, most) {
+        Best::Straight(order) => return order,
+        Best::Fits(order) => cheapest = cheapest.or(Some(order)),
+        Best::None => {}
+    }
+    choices.extend(raised);
+    let less = || (0..most).rev().find_map(|care| chooser.best(&choices, care).order());
+    cheapest.or_else(less).or(chooser.fallback).unwrap_or(Order::BaseFirst)
+}
+
+/// The best of some ways to hold the arm.
+enum Best<J> {
+    /// The cheapest with which the straight drive is clear.
+    Straight(Order<J>),
+    /// There is none, but this one is clear at both ends.
+    Fits(Order<J>),
+    None,
+}
+
+impl<J> Best<J> {
+    fn order(self) -> Option<Order<J>> {
+        match self {
+            Self::Straight(order) | Self::Fits(order) => Some(order),
+            Self::None => None,
         }
     }
-    fallback.unwrap_or(Order::BaseFirst)
+}
+
+/// Compares ways to hold the arm on a drive from `from` to `target`.
+struct Chooser<'a, M: Manipulator> {
+    m: &'a Tabletop<M>,
+    from: &'a TabletopState<M>,
+    target: &'a Configuration<M::Joints>,
+    held: Option<Held>,
+    widths: Widths<'a, M>,
+    drive: Drive<'a, M>,
+    /// The cheapest one with which the robot is not too wide, else the cheapest of all, whether or not it is clear.
+    fallback: Option<Order<M::Joints>>,
+}
+
+impl<M: Manipulator> Chooser<'_, M> {
+    /// The best of `choices`, which are sorted by cost; those with which the robot is too wide for a passage last.
+    fn best(&mut self, choices: &[(f64, Order<M::Joints>, M::Joints)], care: usize) -> Best<M::Joints> {
+        // OPTIMIZATION: how wide the robot is with an arm is asked only of the arms that are looked at.
+        let mut wide: Vec<Option<bool>> = vec![None; choices.len()];
+        let mut fits = None;
+        for is_wide in [false, true] {
+            for ((_, order, arm), wide) in choices.iter().zip(&mut wide) {
+                if *wide.get_or_insert_with(|| self.widths.is_wide(arm)) != is_wide {
+                    continue;
+                }
+                self.fallback.get_or_insert(*order);
+                if !self.drive.fits(arm, care) || !self.stays(arm) {
+                    continue;
+                }
+                if self.drive.is_straight(care) {
+                    return Best::Straight(*order);
+                }
+                fits.get_or_insert(*order);
+            }
+        }
+        fits.map_or(Best::None, Best::Fits)
+    }
+
+    /// Does what is held stay level on the way to this arm and from there on?
+    fn stays(&self, arm: &M::Joints) -> bool {
+        let Self { m, from, target, .. } = self;
+        self.held
+            .is_none_or(|held| stays_level(m, &held, &from.robot.arm, arm) && stays_level(m, &held, arm, &target.arm))
+    }
+}
+
+/// The empty hand raised straight up from where it is, and from where it shall go, as far as the arm reaches: above what stands
+/// there.
+fn raised<M: Manipulator>(
+    m: &Tabletop<M>,
+    from: &TabletopState<M>,
+    target: &Configuration<M::Joints>,
+) -> Vec<(Order<M::Joints>, M::Joints)> {
+    if from.mode.held().is_some() {
+        return Vec::new();
+    }
+    let up = |q: &Configuration<M::Joints>| {
+        let at = m.manipulator().world_from_tool(q);
+        let line = line::follow(m, &q.base, &q.arm, &at, &(Vector3::z() * RAISED_M));
+        line.arms.last().map(|arm| (Order::Through(*arm), *arm))
+    };
+    [&from.robot, target].into_iter().filter_map(up).collect()
 }
 
 /// What it costs to drive with the arm at `arm`: the arm's travel to there and from there on, and the drive, dearer with the

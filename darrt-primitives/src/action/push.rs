@@ -24,8 +24,9 @@ pub(super) use hand::Pushable;
 /// is shorter than this, metres.
 const LEAST_PUSH_M: f64 = 0.02;
 
-/// Share of the pushes that may take the object as near to other things as the rules allow; the others keep the wanted margin.
-const CLOSE_SHARE: f64 = 0.25;
+/// Share of the pushes that may take object and hand as near to other things as the rules allow; the others keep the wanted
+/// margins.
+const CLOSE_SHARE: f64 = 0.1;
 
 /// Retreat, transit to the pushing pose, straight down behind the object, and the push: to the object's target or, where
 /// that lies off the support or too near to its edge, to the edge. Straight; where that is blocked along an arc, on which the
@@ -53,7 +54,7 @@ pub fn push<M: Manipulator>(
     let care = if rng.random_bool(CLOSE_SHARE) { 0 } else { m.collision_scene().most_care() };
     let beside = from.mode.opened_to(pushable.gap_m).and_then(|mode| mode.engaged_with(object));
     let probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
-    let mut attempt = Attempt { m, from, pushable: &pushable, probe, twin: rng.random_bool(0.5) };
+    let mut attempt = Attempt { m, from, pushable: &pushable, probe, twin: rng.random_bool(0.5), care };
 
     let straight = Course::straight(m, from, &pushable, &end, settle_m, care);
     if let Ok(course) = &straight
@@ -110,7 +111,7 @@ pub fn hand_behind<M: Manipulator>(
     let beside = from.mode.opened_to(pushable.gap_m).and_then(|mode| mode.engaged_with(object));
     let probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
     let heading = way.slide.heading().ok_or(Infeasible::NoProgress)?;
-    let place = HandPlace::new(m, &pushable, &heading, stance, &probe)?;
+    let place = HandPlace::new(m, &pushable, &heading, stance, 0, &probe)?;
     Ok(SlidingHand { primitive, ..place.hand(&pushable) })
 }
 
@@ -121,6 +122,8 @@ struct Attempt<'a, M: Manipulator> {
     pushable: &'a Pushable<'a>,
     probe: Probe<'a, M>,
     twin: bool,
+    /// With how much care the hand stands at the object.
+    care: usize,
 }
 
 /// Why there is no push along some way.
@@ -139,12 +142,12 @@ impl From<Infeasible> for Refusal {
 impl<M: Manipulator> Attempt<'_, M> {
     /// The push along `course`, with the hand in the first of its leans in which it can be done.
     fn run(&mut self, course: &Course, rng: &mut dyn Rng) -> Result<Instances<Tabletop<M>>, Refusal> {
-        let Self { m, from, pushable, twin, .. } = *self;
+        let Self { m, from, pushable, twin, care, .. } = *self;
         let mut refusal = Refusal { why: Infeasible::NoContact, is_of_hand: true };
         let mut chain = None;
         for &lean in &m.settings().push.leans_rad {
             let stance_of_hand = HandStance { twin, lean };
-            let place = match HandPlace::new(m, pushable, &course.heading, &stance_of_hand, &self.probe) {
+            let place = match HandPlace::new(m, pushable, &course.heading, &stance_of_hand, care, &self.probe) {
                 Ok(place) => place,
                 Err(why) => {
                     refusal.why = why;

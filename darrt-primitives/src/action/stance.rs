@@ -23,7 +23,7 @@ const ARM_TRIES: usize = 4;
 const NEAREST_OF: usize = 4;
 
 /// On so many more bases a stance with more of the wanted margins is looked for when one that keeps the rules is found.
-const MORE_TRIES: usize = 4;
+const MORE_TRIES: usize = 8;
 
 /// With how much [care](darrt_core::validity::Validity::most_care) a stance is looked at: what is asked of it goes down as
 /// states are found that keep no more.

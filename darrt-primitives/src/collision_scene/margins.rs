@@ -171,6 +171,9 @@ impl CollisionScene {
         }
         *most_m = robot_m.max(held_m).max(object_m);
         if *most_m > least_m {
+            // What the joints bring to the robot's own body is no nearer to it than to a table: only the links of an arm are
+            // near each other by the way they are built.
+            may(self.hand_links, self.base_links, robot_m);
             may(self.all_links, self.all_links, least_m);
             may(self.all_links, BodySet::ALL, robot_m);
             may(terms.held, BodySet::ALL, held_m);

@@ -132,7 +132,8 @@ pub(super) struct HandPlace {
 }
 
 impl HandPlace {
-    /// The hand in this stance, as far as hand and object alone can tell.
+    /// The hand in this stance, as far as hand and object alone can tell; with this
+    /// [care](darrt_core::validity::Validity::most_care) at least.
     ///
     /// # Errors
     /// [`Infeasible::NoContact`] where such a hand does not push, [`Infeasible::Blocked`].
@@ -141,6 +142,7 @@ impl HandPlace {
         pushable: &Pushable<'_>,
         direction: &Unit<Vector2<f64>>,
         stance: &HandStance,
+        care: usize,
         probe: &Probe<'_, M>,
     ) -> Result<Self, Infeasible> {
         let settings = m.settings();
@@ -154,10 +156,10 @@ impl HandPlace {
         let why =
             |at: &Isometry3<f64>| probe.check_hand(at, &none).err().map_or(Infeasible::NoContact, Infeasible::Blocked);
         let before = moved(&at_contact, &-ahead, before_m);
-        if !probe.is_hand_clear(&before, &none, 0) {
+        let is_clear = |at: &Isometry3<f64>, more: usize| probe.is_hand_clear(at, &none, more.max(care));
+        if !is_clear(&before, 0) {
             return Err(why(&before));
         }
-        let is_clear = |at: &Isometry3<f64>, care| probe.is_hand_clear(at, &none, care);
         let standoff_m =
             room_for_hand(m, settings.push.standoff_m, &at_contact, &-ahead, is_clear).map_err(|at| why(&at))?;
         let behind = moved(&at_contact, &-ahead, standoff_m.wanted_m());
