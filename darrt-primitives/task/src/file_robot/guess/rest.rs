@@ -10,6 +10,7 @@ use rand::RngExt as _;
 use super::super::semantic::{Disabled, Semantic};
 use super::super::travel::corners;
 use super::hand::variable_of;
+use super::posture::in_the_way_m;
 
 /// So many turning joints in a row are another arm or a leg; of more only the first are tucked, for the last are fingers.
 const LEAST_JOINTS: usize = 5;
@@ -35,8 +36,8 @@ pub(super) struct Limb {
     pub(super) state: Option<String>,
 }
 
-/// The limbs that none of the joints `mine` belongs to, each in that of the postures tried in which it reaches least far from the
-/// middle of the robot, and touches nothing. A limb that touches something in all of them is left out.
+/// The limbs that none of the joints `mine` belongs to, each in that of the postures tried in which it is least in the way, and
+/// touches nothing. A limb that touches something in all of them is left out.
 pub(super) fn limbs(
     (description, tree): (&RobotDescription, &KinematicTree),
     bodies: &[Option<Body>],
@@ -57,6 +58,7 @@ pub(super) fn limbs(
         }
     }
     let mut values = tree.neutral();
+    let floor_m = lowest_m(tree, bodies, &values);
     let mut found = Vec::new();
     for mut row in rows {
         row.truncate(MOST_JOINTS);
@@ -65,7 +67,7 @@ pub(super) fn limbs(
         let states = semantic.iter().flat_map(|semantic| semantic.states(description, &names));
         let states: Vec<_> = states.map(|(name, values)| (name.to_owned(), values)).collect();
         let disabled = semantic.map_or(&[][..], |semantic| &semantic.disabled);
-        let limb = Row { tree, bodies, variables: &row, disabled };
+        let limb = Row { tree, bodies, variables: &row, disabled, floor_m };
         let Some((chosen, state)) = limb.tucked(&values, &states, &mut rng) else { continue };
         for (variable, value) in row.iter().zip(&chosen) {
             if let Some(slot) = values.get_mut(*variable) {
@@ -118,10 +120,21 @@ struct Row<'a> {
     variables: &'a [usize],
     /// Pairs that the SRDF does not check.
     disabled: &'a [Disabled],
+    /// The height of the floor, in the frame of the root, metres.
+    floor_m: f64,
+}
+
+/// The lowest point of the robot, in the frame of its root, metres.
+fn lowest_m(tree: &KinematicTree, bodies: &[Option<Body>], values: &[f64]) -> f64 {
+    let mut poses = vec![Isometry3::identity(); tree.link_count()];
+    // The values are the tree's own, so there are as many as it wants.
+    let _ = tree.forward(values, &Isometry3::identity(), &mut poses);
+    let bodies = bodies.iter().zip(&poses).filter_map(|(body, pose)| Some((body.as_ref()?, pose)));
+    bodies.flat_map(|(body, pose)| corners(body).into_iter().map(move |corner| (pose * corner).z)).fold(0.0, f64::min)
 }
 
 impl Row<'_> {
-    /// The values with which it reaches least far, and which state of the SRDF they are. All else stands as in `rest`.
+    /// The values with which it is least in the way, and which state of the SRDF they are. All else stands as in `rest`.
     fn tucked(
         &self,
         rest: &[f64],
@@ -185,7 +198,7 @@ impl Row<'_> {
         Some((best, None))
     }
 
-    /// How far the limb reaches from the middle of the robot, and which of its links are near which other ones.
+    /// How much the limb is in the way, and which of its links are near which other ones.
     fn seen(&self, rest: &[f64], joints: &[f64], mine: &[usize], others: &[usize]) -> Option<(f64, Vec<bool>)> {
         let mut values = rest.to_vec();
         for (variable, value) in self.variables.iter().zip(joints) {
@@ -200,7 +213,7 @@ impl Row<'_> {
             let (shape, pose) = body(*link)?;
             for corner in corners(shape) {
                 let at = pose * corner;
-                reach_m = reach_m.max(at.x.hypot(at.y));
+                reach_m = reach_m.max(in_the_way_m(&at, self.floor_m));
             }
             for other in others {
                 let (shape_there, there) = body(*other)?;

@@ -34,8 +34,12 @@ pub(super) struct Guess {
     /// SRDFs that cannot be read, and why.
     pub(super) unread: Vec<(PathBuf, String)>,
     pub(super) home: Vec<f64>,
+    /// Another posture, the hand pointing down.
+    pub(super) hand_down: Option<Vec<f64>>,
     /// How far the root must be raised, metres.
     pub(super) base_z: f64,
+    /// It is raised as if it stood on something.
+    pub(super) pedestal: bool,
     /// With the share of configurations in which they touch.
     pub(super) ignore: Vec<([String; 2], String)>,
 }
@@ -102,11 +106,12 @@ impl Guess {
             quoted(self.base)
         ));
         if self.base_z > 0.0 {
-            line(format!("xyz = [0, 0, {}]            # its lowest point is on the floor", self.base_z));
+            let why = if self.pedestal { "# ? as if it stood on something so high; 0 if it stands on the floor" } else { "# its lowest point is on the floor" };
+            line(format!("xyz = [0, 0, {}]            {why}", self.base_z));
         }
         line(format!("\n[arm]                           # joints: {}", self.arm.joints.join(", ")));
         line(format!("from = {}\nto = {}", quoted(&self.arm.from), quoted(&self.arm.to)));
-        line("payload_kg = 1.0                # ? see the data sheet\npush_force_n = 20               # ? sideways, at the hand".to_owned());
+        line("payload_kg = 2.0                # ? see the data sheet\npush_force_n = 30               # ? sideways, at the hand".to_owned());
         line("\n[tool]                          # ? x out of the hand, y the way the fingers open, in the middle between the pads".to_owned());
         let hand = &self.hand;
         if let Some(built) = &hand.built {
@@ -125,7 +130,7 @@ impl Guess {
             "pad_length_m = {}            # ? from the tip back",
             numbers(&[hand.pad_length_m]).trim_matches(['[', ']'])
         ));
-        line("grip_force_n = 30               # ? of each finger".to_owned());
+        line("grip_force_n = 70               # ? of each finger; see the data sheet".to_owned());
         for (name, multiplier) in &hand.follow {
             line(format!(
                 "follow.{} = {{ multiplier = {multiplier} }}     # ? the description lets it move freely",
@@ -136,7 +141,10 @@ impl Guess {
             "\n[postures]                      # a value for each joint of the arm\nhome = {}",
             numbers(&self.home)
         ));
-        for State { name, values, is_within } in self.states.iter().filter(|state| state.name != "home") {
+        if let Some(values) = &self.hand_down {
+            line(format!("hand-down = {}", numbers(values)));
+        }
+        for State { name, values, is_within } in self.states.iter().filter(|state| !["home", "hand-down"].contains(&&*state.name)) {
             if *is_within {
                 line(format!("{} = {}      # of the SRDF", quoted(name), numbers(values)));
             } else {
