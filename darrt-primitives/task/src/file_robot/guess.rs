@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use darrt_primitives::joints::MAX_JOINTS;
 use darrt_primitives::kinematics::srdf::{VirtualJoint, VirtualKind};
+use darrt_primitives::kinematics::tree::LinkMotion;
 use darrt_primitives::kinematics::urdf::{JointDescription, JointKind};
 use darrt_primitives::kinematics::{KinematicTree, MeshPlaces, RobotDescription, link_bodies};
+use nalgebra::Isometry3;
 
 use super::FileRobot;
 use super::load::Loaded;
@@ -28,6 +30,8 @@ const MOST_ARM_JOINTS: usize = 7;
 /// is so high, a little above a table.
 const LOW_SHOULDER_M: f64 = 0.5;
 const SHOULDER_M: f64 = 0.8;
+/// The vertical part of the direction of a lift is larger.
+const UPRIGHT: f64 = 0.95;
 /// A group of an SRDF that has so many is an arm.
 const ARM_JOINTS: std::ops::RangeInclusive<usize> = 6..=MAX_JOINTS;
 
@@ -66,7 +70,8 @@ pub fn robot_file(urdf: &Path, beside: &Path, known: &Known) -> Result<String, R
         .ok_or_else(|| refuse("has no joint between its root and its hand"))?;
     let mut mine = arm.joints.clone();
     mine.extend(std::iter::once(hand.joint.clone()).chain(hand.follow.iter().map(|(name, _)| name.clone())));
-    let rest = rest::limbs((&description, &tree), &bodies, &mine, semantic.as_ref());
+    let lifts = lifts(&description, &tree, &arm);
+    let rest = rest::limbs((&description, &tree), &bodies, &mine, &lifts, semantic.as_ref());
     let states = semantic.iter().flat_map(|semantic| semantic.states(&description, &arm.joints));
     let limits =
         |name: &String| description.joints.iter().find(|joint| *joint.name == **name).map(|joint| joint.soft_limit);
@@ -94,6 +99,7 @@ pub fn robot_file(urdf: &Path, beside: &Path, known: &Known) -> Result<String, R
         arm,
         hand,
         rest,
+        lifts,
         states,
         base_z: 0.0,
         pedestal: false,
@@ -108,6 +114,33 @@ pub fn robot_file(urdf: &Path, beside: &Path, known: &Known) -> Result<String, R
     let home = drawn_in.or_else(|| hand_down.clone()).unwrap_or_else(|| guess.home.clone());
     let hand_down = hand_down.filter(|hand_down| *hand_down != home);
     Ok(Guess { home, hand_down, ignore, ..guess }.text())
+}
+
+/// The joints that lift the arm, upright, each halfway up, metres: at its lower end an arm reaches no table well.
+fn lifts(description: &RobotDescription, tree: &KinematicTree, arm: &ArmGuess) -> Vec<(String, f64)> {
+    let mut poses = vec![Isometry3::identity(); tree.link_count()];
+    // The values are the tree's own, so there are as many as it wants.
+    let _ = tree.forward(&tree.neutral(), &Isometry3::identity(), &mut poses);
+    let mut at = tree.link_index(&arm.from);
+    let mut found = Vec::new();
+    while let Some(link) = at {
+        if let Some(LinkMotion::Sliding { axis, .. }) = tree.motion(link)
+            && let Some(joint) = description.joints.iter().find(|joint| {
+                tree.link_names().get(link).is_some_and(|name| {
+                    description.links.get(joint.child).is_some_and(|child| *child.name == **name)
+                        && joint.mimic.is_none()
+                })
+            })
+        {
+            let limit = joint.soft_limit;
+            let is_upright = poses.get(link).is_some_and(|pose| (pose.rotation * axis.into_inner()).z.abs() > UPRIGHT);
+            if is_upright && limit.lower.is_finite() && limit.upper.is_finite() {
+                found.push((joint.name.to_string(), f64::midpoint(limit.lower, limit.upper)));
+            }
+        }
+        at = tree.parent(link);
+    }
+    found
 }
 
 /// How far the root must be raised, metres: until nothing is in the floor; an arm that comes alone, so low that it reaches no table, as

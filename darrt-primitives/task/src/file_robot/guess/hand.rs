@@ -219,7 +219,8 @@ fn describe(
         // Two parts that move together are one finger.
         return None;
     }
-    let is_parallel = closed.iter().zip(&open).all(|(closed, open)| closed.rotation.angle_to(&open.rotation) <= PARALLEL_RAD);
+    let is_parallel =
+        closed.iter().zip(&open).all(|(closed, open)| closed.rotation.angle_to(&open.rotation) <= PARALLEL_RAD);
     let hand = HandGuess {
         link: name(hand)?,
         on: name(hand)?,

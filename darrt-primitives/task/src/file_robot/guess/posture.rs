@@ -19,8 +19,8 @@ use crate::robot_file::RobotFileError;
 const TRIES: usize = 400;
 /// So many of the best are looked at for what touches.
 const LOOKED_AT: usize = 60;
-/// How far links keep from each other in it, metres.
-const APART_M: f64 = 0.01;
+/// How far links keep from each other in it, metres: the first for which one is found. Some stand nearer in all.
+const APART_M: [f64; 3] = [0.01, 0.003, 1e-4];
 /// Steps of the way between two postures.
 const STEPS: u32 = 24;
 /// How far joints keep from their limits in it, as a share of half their range.
@@ -30,6 +30,7 @@ const ABOVE_FLOOR_M: f64 = 0.05;
 /// HEURISTIC: what is higher than most tables, metres, is seldom in the way.
 const TABLES_M: f64 = 0.9;
 const ABOVE_TABLES: f64 = 0.5;
+const OVER_BASE: f64 = 0.1;
 
 /// What was found.
 #[derive(Debug, Clone, Default)]
@@ -42,9 +43,38 @@ pub(super) struct Found {
     pub(super) ignore: Vec<([String; 2], String)>,
 }
 
-/// How much a point of a limb is in the way: how far from the middle of the robot, less above tables.
-pub(super) fn in_the_way_m(at: &Point3<f64>, floor_m: f64) -> f64 {
-    at.x.hypot(at.y) * if at.z - floor_m > TABLES_M { ABOVE_TABLES } else { 1.0 }
+/// What a robot stands on, seen from above.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Footprint {
+    low: [f64; 2],
+    high: [f64; 2],
+    floor_m: f64,
+}
+
+impl Footprint {
+    /// The box around points, in a frame whose z axis points up.
+    pub(super) fn of(points: impl Iterator<Item = Point3<f64>>, floor_m: f64) -> Self {
+        let none = Self { low: [0.0; 2], high: [0.0; 2], floor_m };
+        points.filter(|at| at.z - floor_m <= TABLES_M).fold(none, |known, at| Self {
+            low: [known.low[0].min(at.x), known.low[1].min(at.y)],
+            high: [known.high[0].max(at.x), known.high[1].max(at.y)],
+            floor_m,
+        })
+    }
+
+    /// How much a point of a limb is in the way, metres: how far it is beside what the robot stands on, less above tables; and a
+    /// little of how far from the middle, so that what is over the base is drawn in too.
+    pub(super) fn in_the_way_m(&self, at: &Point3<f64>) -> f64 {
+        let beside = |axis: usize| (at[axis] - self.high[axis]).max(self.low[axis] - at[axis]).max(0.0);
+        let share = if at.z - self.floor_m > TABLES_M { ABOVE_TABLES } else { 1.0 };
+        share * beside(0).hypot(beside(1)) + OVER_BASE * at.x.hypot(at.y)
+    }
+}
+
+/// What is rigid to the base.
+fn footprint(robot: &FileRobot) -> Footprint {
+    let rigid = robot.links.iter().zip(&robot.places).filter(|(link, _)| link.group == LinkGroup::Base);
+    Footprint::of(rigid.flat_map(|(link, place)| corners(&link.body).into_iter().map(|at| place.offset * at)), 0.0)
 }
 
 pub(super) fn search(loaded: &Loaded) -> Result<Found, RobotFileError> {
@@ -64,9 +94,10 @@ pub(super) fn search(loaded: &Loaded) -> Result<Found, RobotFileError> {
             .any(|([first, second], _)| [name(a), name(b)] == [first, second] || [name(b), name(a)] == [first, second])
     };
     let kept: Vec<_> = robot.self_pairs().iter().copied().filter(|(a, b)| !is_joined(*a, *b)).collect();
-    let tried = Tried { robot: &robot, pairs: &kept, gap_m: robot.hand().max_gap_m() };
-    let hand_down = tried.hand_down(&mut rng);
-    let drawn_in = hand_down.and_then(|hand_down| tried.drawn_in(&hand_down, &mut rng));
+    let tried = Tried { robot: &robot, pairs: &kept, gap_m: robot.hand().max_gap_m(), footprint: footprint(&robot) };
+    let found = APART_M.into_iter().find_map(|apart_m| Some((tried.hand_down(apart_m, &mut rng)?, apart_m)));
+    let drawn_in = found.and_then(|(hand_down, apart_m)| tried.drawn_in(&hand_down, apart_m, &mut rng));
+    let hand_down = found.map(|(hand_down, _)| hand_down);
     let values = |arm: Joints| arm.as_ref().to_vec();
     Ok(Found { hand_down: hand_down.map(values), drawn_in: drawn_in.map(values), ignore })
 }
@@ -76,26 +107,27 @@ struct Tried<'a> {
     robot: &'a FileRobot,
     pairs: &'a [(usize, usize)],
     gap_m: f64,
+    footprint: Footprint,
 }
 
 impl Tried<'_> {
     /// Of configurations with a hand that points down those are looked at whose joints are far from their limits.
-    fn hand_down(&self, rng: &mut Stream) -> Option<Joints> {
+    fn hand_down(&self, apart_m: f64, rng: &mut Stream) -> Option<Joints> {
         let mut drawn: Vec<_> =
             (0..TRIES).filter_map(|_| self.down(rng, 0.2..0.7)).map(|arm| (self.room(&arm), arm)).collect();
         drawn.sort_by(|(a, _), (b, _)| b.total_cmp(a));
-        drawn.into_iter().map(|(_, arm)| arm).find(|arm| self.reach(arm).is_some() && self.is_free(arm, APART_M))
+        drawn.into_iter().map(|(_, arm)| arm).find(|arm| self.reach(arm).is_some() && self.is_free(arm, apart_m))
     }
 
     /// The configuration that is least in the way of those from which a straight way leads to `other`.
-    fn drawn_in(&self, other: &Joints, rng: &mut Stream) -> Option<Joints> {
+    fn drawn_in(&self, other: &Joints, apart_m: f64, rng: &mut Stream) -> Option<Joints> {
         let mut drawn: Vec<Joints> = (0..TRIES).filter_map(|_| self.down(rng, 0.1..0.5)).collect();
         drawn.extend((0..4 * TRIES).filter_map(|_| drawn_arm(self.robot, rng)));
         drawn.push(*other);
         drawn.retain(|arm| self.room(arm) >= ROOM);
         let mut drawn: Vec<_> = drawn.into_iter().filter_map(|arm| Some((self.reach(&arm)?, arm))).collect();
         drawn.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let free = drawn.into_iter().map(|(_, arm)| arm).filter(|arm| self.is_free(arm, APART_M));
+        let free = drawn.into_iter().map(|(_, arm)| arm).filter(|arm| self.is_free(arm, apart_m));
         free.take(LOOKED_AT).find(|arm| self.is_way_free(arm, other))
     }
 
@@ -137,7 +169,7 @@ impl Tried<'_> {
                 if at.z < ABOVE_FLOOR_M {
                     return None;
                 }
-                reach_m = reach_m.max(in_the_way_m(&at, 0.0));
+                reach_m = reach_m.max(self.footprint.in_the_way_m(&at));
             }
         }
         Some(reach_m)

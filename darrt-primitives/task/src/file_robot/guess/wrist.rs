@@ -22,7 +22,7 @@ const SAME_M: f64 = 1e-3;
 const PALM_M: [f64; 3] = [0.06, 0.11, 0.05];
 const FINGER_M: [f64; 3] = [0.06, 0.012, 0.02];
 const OPENING_M: f64 = 0.08;
-const PAD_M: f64 = 0.02;
+const PAD_M: f64 = 0.03;
 
 /// A hand of boxes at the end of the longest arm; or why there is no such arm.
 pub(super) fn hand(tree: &KinematicTree, bodies: &[Option<Body>]) -> Result<HandGuess, String> {
@@ -101,7 +101,8 @@ fn reach(
     while let Some((link, pose)) = rigid.pop() {
         if let Some(reach) = bodies.get(link).and_then(|body| of_body(body.as_ref()?, &pose, ways)) {
             let larger = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.max(c), b.max(d)];
-            found = Some(found.map_or(reach, |[i, j, k]| [larger(i, reach[0]), larger(j, reach[1]), larger(k, reach[2])]));
+            found =
+                Some(found.map_or(reach, |[i, j, k]| [larger(i, reach[0]), larger(j, reach[1]), larger(k, reach[2])]));
         }
         let below = children(tree, link).filter(|child| variable_of(tree, *child).is_none());
         rigid.extend(below.filter_map(|child| Some((child, pose * tree.parent_from_link(child)?))));
@@ -161,7 +162,11 @@ fn is_arm(tree: &KinematicTree, last: usize) -> Result<(), String> {
     for joint in 1..LEAST_JOINTS {
         let Some(next) = above(at) else {
             let needed = format!("an arm has {LEAST_JOINTS} joints at least");
-            return Err(if joint == 1 { format!("and is one joint: {needed}") } else { format!("and has {joint} joints: {needed}") });
+            return Err(if joint == 1 {
+                format!("and is one joint: {needed}")
+            } else {
+                format!("and has {joint} joints: {needed}")
+            });
         };
         // The first joint may stand on what carries other limbs too.
         let carried = moved_by(next).count();
