@@ -55,9 +55,10 @@ impl ConvexHull {
 }
 
 fn extent(points: &[Point3<f64>]) -> f64 {
-    let (low, high) = points.iter().fold((Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)), |(l, h), p| {
-        (l.inf(&p.coords), h.sup(&p.coords))
-    });
+    let (low, high) =
+        points.iter().fold((Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)), |(l, h), p| {
+            (l.inf(&p.coords), h.sup(&p.coords))
+        });
     (high - low).max()
 }
 
@@ -77,7 +78,11 @@ fn planes_around(hull: &ConvexHull, most: usize) -> Option<(Vec<Point3<f64>>, f6
     let faces: Vec<Plane> = faces.collect();
     let placed = |at: Point3<f64>| {
         let beyond = faces.iter().enumerate().map(|(face, plane)| (plane.normal.dot(&at.coords) - plane.offset, face));
-        beyond.reduce(|best, next| if next.0 > best.0 { next } else { best }).map(|(beyond_m, face)| Corner { at, beyond_m, face })
+        beyond.reduce(|best, next| if next.0 > best.0 { next } else { best }).map(|(beyond_m, face)| Corner {
+            at,
+            beyond_m,
+            face,
+        })
     };
     let mut planes: Vec<Plane> =
         (0..3).flat_map(|axis| [Vector3::ith(axis, 1.0), Vector3::ith(axis, -1.0)]).map(touching).collect();
