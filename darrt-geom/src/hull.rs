@@ -1,5 +1,7 @@
 //! Convex hulls of points, checked after they are built.
 
+mod cover;
+
 use crate::check;
 use crate::convert;
 use crate::error::GeomError;
@@ -33,13 +35,7 @@ impl ConvexHull {
     /// the points are thinner in some direction than [`MINIMUM_THICKNESS_RATIO`] of their extent, or rounding keeps
     /// the finished hull from holding every point.
     pub fn new(name: &str, points: &[Point3<f64>]) -> Result<Self, GeomError> {
-        check::count(format_args!("points of {name}"), points.len(), 4, MAXIMUM_CORNERS)?;
-        for (i, p) in points.iter().enumerate() {
-            check::point(format_args!("point {i} of {name}"), p)?;
-        }
-        let size = check_thickness(name, points)?;
-        let distinct = without_duplicates(points, size * 1e-9);
-        check::count(format_args!("different points of {name}"), distinct.len(), 4, MAXIMUM_POINTS)?;
+        let (distinct, size) = Self::checked(name, points)?;
         let failed = |outlier| GeomError::UnsoundHull { name: name.to_owned(), outlier, maximum: TOLERANCE };
         let (vertices, triangles, polyhedron) = build(&distinct).ok_or_else(|| failed(1.0))?;
         let outlier = largest_outlier(&vertices, &triangles, &distinct) / size;
@@ -47,6 +43,18 @@ impl ConvexHull {
             return Err(failed(outlier));
         }
         Ok(Self { vertices, triangles, parry: SharedShape::new(polyhedron) })
+    }
+
+    /// The different points, and their extent.
+    fn checked(name: &str, points: &[Point3<f64>]) -> Result<(Vec<Point3<f64>>, f64), GeomError> {
+        check::count(format_args!("points of {name}"), points.len(), 4, MAXIMUM_CORNERS)?;
+        for (i, p) in points.iter().enumerate() {
+            check::point(format_args!("point {i} of {name}"), p)?;
+        }
+        let size = check_thickness(name, points)?;
+        let distinct = without_duplicates(points, size * 1e-9);
+        check::count(format_args!("different points of {name}"), distinct.len(), 4, MAXIMUM_POINTS)?;
+        Ok((distinct, size))
     }
 
     /// Corners of the hull, own frame.

@@ -103,6 +103,14 @@ impl Shape {
         ConvexHull::new(name, points).map(|hull| Self::ConvexHull(Arc::new(hull)))
     }
 
+    /// A convex solid with at most about `most` corners that holds the hull of `points`; `name` appears in error messages.
+    ///
+    /// # Errors
+    /// See [`ConvexHull::around`].
+    pub fn convex_cover(name: &str, points: &[Point3<f64>], most: usize) -> Result<Self, GeomError> {
+        ConvexHull::around(name, points, most).map(|(hull, _)| Self::ConvexHull(Arc::new(hull)))
+    }
+
     /// The half space below the plane through the origin with outward unit `normal`.
     ///
     /// # Errors

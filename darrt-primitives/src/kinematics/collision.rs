@@ -9,9 +9,14 @@ use nalgebra::Vector3;
 use super::tree::KinematicTree;
 use super::urdf::{Geometry, LinkDescription, RobotDescription, UrdfError};
 
+/// A mesh gets a solid with about so many corners at most: what a distance costs grows with them, how far the solid stands off
+/// shrinks ever more slowly.
+pub const MOST_CORNERS: usize = 64;
+
 /// The body of every link, in the order of the tree, in link frames; `None` for a link without collision geometry.
 ///
-/// A mesh becomes its convex hull: solid, and never smaller than the mesh. `mesh_path` says where the file of a mesh
+/// A mesh becomes its convex hull, or where that has many corners a solid around it with [`MOST_CORNERS`] or a few more: solid, and
+/// never smaller than the mesh. `mesh_path` says where the file of a mesh
 /// is; see [`no_meshes`] and [`MeshPlaces`](super::MeshPlaces).
 ///
 /// # Errors
@@ -70,7 +75,7 @@ fn mesh(
     let refused = |reason: String| UrdfError::Mesh { link: link.to_owned(), filename: filename.to_owned(), reason };
     let path = mesh_path(filename).ok_or_else(|| refused(NOT_FOUND.to_owned()))?;
     let mesh = TriangleMesh::from_file(&path, scale).map_err(|e| refused(e.to_string()))?;
-    Shape::convex_hull(filename, mesh.vertices()).map_err(|e| refused(e.to_string()))
+    Shape::convex_cover(filename, mesh.vertices(), MOST_CORNERS).map_err(|e| refused(e.to_string()))
 }
 
 #[cfg(test)]

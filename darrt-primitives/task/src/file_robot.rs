@@ -122,6 +122,23 @@ impl FileRobot {
         })
     }
 
+    /// The lowest point of what is rigid to the base, metres, and of what its first joint only turns about a vertical axis, less what
+    /// that must keep from the floor.
+    fn lowest_m(&self) -> f64 {
+        let (rigid_m, _) = self.base_extent_m();
+        let first = self.chain.joints.first().filter(|joint| !joint.slides);
+        let turned = first.filter(|joint| (joint.before.rotation * joint.axis.into_inner()).z.abs() > 1.0 - 1e-9);
+        let Some(joint) = turned else { return rigid_m };
+        let carried = self.links.iter().zip(&self.places).filter(|(_, at)| at.anchor == 1 && at.steps.is_empty());
+        let lowest = carried.map(|(link, place)| load::lowest_m(&link.body, &(joint.before * place.offset)));
+        lowest.fold(rigid_m, |lowest, m| lowest.min(m - load::ABOVE_FLOOR_M))
+    }
+
+    /// The height of the first joint, metres.
+    fn shoulder_m(&self) -> f64 {
+        self.chain.joints.first().map_or(0.0, |joint| joint.before.translation.z)
+    }
+
     /// The ways of the joints, of the base, and of its heading.
     fn ways(&self, a: &Configuration<Joints>, b: &Configuration<Joints>) -> (Ways, [f64; 2]) {
         let joints = a.arm.as_ref().iter().zip(b.arm.as_ref()).zip(&self.limits);

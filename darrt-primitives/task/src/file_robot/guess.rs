@@ -4,9 +4,12 @@ use std::path::{Path, PathBuf};
 
 use darrt_primitives::joints::MAX_JOINTS;
 use darrt_primitives::kinematics::srdf::{VirtualJoint, VirtualKind};
-use darrt_primitives::kinematics::urdf::JointKind;
+use darrt_primitives::kinematics::tree::LinkMotion;
+use darrt_primitives::kinematics::urdf::{JointDescription, JointKind};
 use darrt_primitives::kinematics::{KinematicTree, MeshPlaces, RobotDescription, link_bodies};
+use nalgebra::Isometry3;
 
+use super::FileRobot;
 use super::load::Loaded;
 use super::semantic::Semantic;
 use crate::robot_file::{RobotFileError, Source};
@@ -15,6 +18,7 @@ mod hand;
 mod posture;
 mod rest;
 mod text;
+mod wheels;
 mod wrist;
 
 use hand::HandGuess;
@@ -22,6 +26,12 @@ use text::{Guess, State};
 
 /// So many joints an arm is guessed to have at most: what is further in is a lift or a waist, and rests.
 const MOST_ARM_JOINTS: usize = 7;
+/// HEURISTIC: an arm that comes without a body and has its shoulder lower than this, metres, stands on something; then its shoulder
+/// is so high, a little above a table.
+const LOW_SHOULDER_M: f64 = 0.5;
+const SHOULDER_M: f64 = 0.8;
+/// The vertical part of the direction of a lift is larger.
+const UPRIGHT: f64 = 0.95;
 /// A group of an SRDF that has so many is an arm.
 const ARM_JOINTS: std::ops::RangeInclusive<usize> = 6..=MAX_JOINTS;
 
@@ -60,7 +70,8 @@ pub fn robot_file(urdf: &Path, beside: &Path, known: &Known) -> Result<String, R
         .ok_or_else(|| refuse("has no joint between its root and its hand"))?;
     let mut mine = arm.joints.clone();
     mine.extend(std::iter::once(hand.joint.clone()).chain(hand.follow.iter().map(|(name, _)| name.clone())));
-    let rest = rest::limbs((&description, &tree), &bodies, &mine, semantic.as_ref());
+    let lifts = lifts(&description, &tree, &arm);
+    let rest = rest::limbs((&description, &tree), &bodies, &mine, &lifts, semantic.as_ref());
     let states = semantic.iter().flat_map(|semantic| semantic.states(&description, &arm.joints));
     let limits =
         |name: &String| description.joints.iter().find(|joint| *joint.name == **name).map(|joint| joint.soft_limit);
@@ -82,24 +93,70 @@ pub fn robot_file(urdf: &Path, beside: &Path, known: &Known) -> Result<String, R
         packages: known.packages.iter().map(|(name, path)| (name.clone(), seen_from(path, beside))).collect(),
         shapeless: shapeless.map(|link| link.name.to_string()).collect(),
         unread,
-        base: semantic.as_ref().map_or("planar", base_kind),
+        base: semantic.as_ref().and_then(base_kind).unwrap_or_else(|| wheels::base_kind(&tree, &bodies, &mine)),
         home: home.collect(),
+        hand_down: None,
         arm,
         hand,
         rest,
+        lifts,
         states,
         base_z: 0.0,
+        pedestal: false,
         ignore: Vec::new(),
     };
     let sources = Sources { urdf, srdf: semantic.map(|semantic| semantic.path), packages: &known.packages };
     // What cannot be read is written all the same: `darrt robot check` says what is wrong with it.
     let Ok(robot) = sources.loaded(&guess).and_then(|loaded| loaded.robot_anywhere()) else { return Ok(guess.text()) };
-    let (lowest_m, _) = robot.base_extent_m();
-    let base_z = if lowest_m < 0.0 { (-lowest_m * 1e4).ceil() / 1e4 } else { 0.0 };
-    let guess = Guess { base_z, ..guess };
-    let (home, ignore) = posture::search(&sources.loaded(&guess)?)?;
-    let home = home.unwrap_or_else(|| guess.home.clone());
-    Ok(Guess { home, ignore, ..guess }.text())
+    let (base_z, pedestal) = raised_m(&robot, &guess, &description);
+    let guess = Guess { base_z, pedestal, ..guess };
+    let posture::Found { hand_down, drawn_in, ignore } = posture::search(&sources.loaded(&guess)?)?;
+    let home = drawn_in.or_else(|| hand_down.clone()).unwrap_or_else(|| guess.home.clone());
+    let hand_down = hand_down.filter(|hand_down| *hand_down != home);
+    Ok(Guess { home, hand_down, ignore, ..guess }.text())
+}
+
+/// The joints that lift the arm, upright, each halfway up, metres: at its lower end an arm reaches no table well.
+fn lifts(description: &RobotDescription, tree: &KinematicTree, arm: &ArmGuess) -> Vec<(String, f64)> {
+    let mut poses = vec![Isometry3::identity(); tree.link_count()];
+    // The values are the tree's own, so there are as many as it wants.
+    let _ = tree.forward(&tree.neutral(), &Isometry3::identity(), &mut poses);
+    let mut at = tree.link_index(&arm.from);
+    let mut found = Vec::new();
+    while let Some(link) = at {
+        if let Some(LinkMotion::Sliding { axis, .. }) = tree.motion(link)
+            && let Some(joint) = description.joints.iter().find(|joint| {
+                tree.link_names().get(link).is_some_and(|name| {
+                    description.links.get(joint.child).is_some_and(|child| *child.name == **name)
+                        && joint.mimic.is_none()
+                })
+            })
+        {
+            let limit = joint.soft_limit;
+            let is_upright = poses.get(link).is_some_and(|pose| (pose.rotation * axis.into_inner()).z.abs() > UPRIGHT);
+            if is_upright && limit.lower.is_finite() && limit.upper.is_finite() {
+                found.push((joint.name.to_string(), f64::midpoint(limit.lower, limit.upper)));
+            }
+        }
+        at = tree.parent(link);
+    }
+    found
+}
+
+/// How far the root must be raised, metres: until nothing is in the floor; an arm that comes alone, so low that it reaches no table, as
+/// if it stood on something. Is that so?
+fn raised_m(robot: &FileRobot, guess: &Guess, description: &RobotDescription) -> (f64, bool) {
+    let hundredths = |up_m: f64| (up_m.max(0.0) * 1e2).ceil() / 1e2;
+    let (lowest_m, shoulder_m) = (robot.lowest_m(), robot.shoulder_m());
+    let moves = |joint: &&JointDescription| joint.kind != JointKind::Fixed && joint.mimic.is_none();
+    let fingers = 1 + guess.hand.follow.len();
+    let built = usize::from(guess.hand.built.is_some());
+    let is_alone = description.joints.iter().filter(moves).count() + built <= guess.arm.joints.len() + fingers;
+    if is_alone && shoulder_m < LOW_SHOULDER_M {
+        return (hundredths((SHOULDER_M - shoulder_m).max(-lowest_m)), true);
+    }
+    let exact_m = if lowest_m < 0.0 { (-lowest_m * 1e4).ceil() / 1e4 } else { 0.0 };
+    (exact_m, false)
 }
 
 /// The files of a guess, where they are.
@@ -120,11 +177,11 @@ impl Sources<'_> {
     }
 }
 
-/// What the SRDF says of the root.
-fn base_kind(semantic: &Semantic) -> &'static str {
+/// What the SRDF says of the root, if that is that it stands where it is.
+fn base_kind(semantic: &Semantic) -> Option<&'static str> {
     let is_fixed = |joint: &VirtualJoint| joint.kind == VirtualKind::Fixed;
     let joints = &semantic.description.virtual_joints;
-    if !joints.is_empty() && joints.iter().all(is_fixed) { "fixed" } else { "planar" }
+    (!joints.is_empty() && joints.iter().all(is_fixed)).then_some("fixed")
 }
 
 fn file_name(description: &RobotDescription, urdf: &Path) -> String {

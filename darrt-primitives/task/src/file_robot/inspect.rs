@@ -13,7 +13,7 @@ use rand::RngExt as _;
 use super::apart::{distances, drawn_arm};
 use super::load::Loaded;
 use super::sampled::{self, JOINED, Pair, Pairs, Rule};
-use super::{FileRobot, shipped};
+use super::{FileRobot, shipped, trial};
 use crate::problem_file::Limits;
 use crate::robot_file::{RobotFileError, Source};
 use crate::text::counted;
@@ -31,12 +31,12 @@ const SHOWN: usize = 5;
 /// Heights at which a hand that points down is tried, metres: from 0 in steps, so many.
 const HEIGHTS: (f64, u32) = (0.1, 21);
 /// Distances from the base at which it is tried, metres.
-const DISTANCES_M: [f64; 6] = [0.3, 0.45, 0.6, 0.75, 0.9, 1.05];
+const DISTANCES_M: [f64; 7] = [0.2, 0.3, 0.45, 0.6, 0.75, 0.9, 1.05];
 
 /// How far to the left of straight ahead, metres.
 const SIDES_M: [f64; 3] = [0.0, -0.3, 0.3];
 /// So far before the base a hand works at least, metres.
-const BEFORE_M: f64 = 0.25;
+const BEFORE_M: f64 = 0.17;
 
 /// What was found.
 #[derive(Debug, Clone)]
@@ -55,6 +55,8 @@ pub struct Inspection {
     pub drives: bool,
     /// At which heights a hand that points down reaches, lowest and highest, and how far ahead, metres.
     pub reach_down: Option<([f64; 2], f64)>,
+    /// Where the table of its first problem stands.
+    pub place: trial::Place,
 }
 
 /// Reads a robot file, or a robot that comes with the program, as planning would, and tries it.
@@ -100,6 +102,7 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
         odd,
         postures: robot.postures.keys().cloned().collect(),
         drives: !robot.ring.is_fixed(),
+        place: trial::place(&robot, (&robot.home, &robot.postures), reach_down),
         reach_down,
     })
 }

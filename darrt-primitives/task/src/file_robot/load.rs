@@ -25,7 +25,7 @@ use crate::robot_file::{Amended, BaseKind, RobotFileError, Source, amend};
 /// So far a wheel may press into the floor, metres: as far as the verifier lets it.
 const FLOOR_M: f64 = 1e-3;
 /// So far above the floor is what moves over it, metres: twice the least margin, for nothing is planned nearer.
-const ABOVE_FLOOR_M: f64 = 0.01;
+pub(super) const ABOVE_FLOOR_M: f64 = 0.01;
 /// Share of a joint's speed limit that a robot is planned with where its file does not say.
 const SPEED_SHARE: f64 = 0.5;
 /// The speed of a joint that nobody limits, radians or metres per second.

@@ -55,7 +55,11 @@ impl TaskRobot for FileRobot {
         let loaded = Loaded::of(settings)?;
         let robot = loaded.robot(settings.limits, settings.base)?;
         let start = robot.start(settings)?;
-        let arm = loaded.amended.arm_joints.iter().cloned().zip(start.as_ref().iter().copied());
+        // All joints but the hand's: what the plan leaves alone stands where it rests.
+        let values = robot.inverse.values(&start, robot.hand.opening.open());
+        let (tree, _) = loaded.solids()?;
+        let names = tree.variables().iter().map(|variable| variable.name.to_string());
+        let start = names.zip(values).filter(|(name, _)| *name != loaded.source.file.gripper.joint).collect();
         let file = &loaded.source.file;
         let names =
             |group| robot.links().iter().filter(move |link| link.group == group).map(|l| l.body.name.to_string());
@@ -67,7 +71,7 @@ impl TaskRobot for FileRobot {
             finger_links: names(LinkGroup::Finger).collect(),
             tip_links: loaded.amended.tip_links.clone(),
             is_limited_softly: settings.limits == Limits::Soft,
-            start: arm.chain(loaded.amended.rest.iter().cloned()).collect(),
+            start,
             at_rest: vec![(file.gripper.joint.clone(), robot.hand.opening.open())] as JointValues,
             self_pairs: robot.self_pairs().iter().map(|(a, b)| [link(*a), link(*b)]).collect(),
             pad_length_m: robot.hand.pad_length_m,

@@ -1,5 +1,13 @@
 //! A first problem for a robot: a table where its hand reaches, and a cup to be set down elsewhere on it.
 
+use std::collections::BTreeMap;
+
+use darrt_geom::{Body, Shape, clearance};
+use darrt_primitives::joints::Joints;
+use darrt_primitives::manipulator::{Configuration, Manipulator as _};
+use nalgebra::{Isometry3, Vector3};
+
+use super::FileRobot;
 use super::inspect::Inspection;
 
 /// Height of the table where the robot's hand, pointing down, reaches nowhere, metres.
@@ -9,17 +17,84 @@ const ABOVE_M: f64 = 0.15;
 /// So much of the table lies nearer to the robot than the cup, metres.
 const NEAR_M: f64 = 0.1;
 
+/// The table: length along x, along y, thickness, metres.
+const TABLE_M: [f64; 3] = [0.5, 0.9, 0.04];
+/// The cup: radius and height, metres; where it stands to the left of straight ahead.
+const CUP_M: [f64; 2] = [0.02, 0.1];
+const CUP_LEFT_M: f64 = -0.15;
+/// How far the robot keeps from both at the start, metres.
+const APART_M: f64 = 0.03;
+/// Heights that are tried, from the best one, metres.
+const HEIGHTS_M: [f64; 9] = [0.0, -0.1, 0.1, -0.2, 0.2, -0.3, 0.3, -0.4, 0.4];
+
+/// Where the table stands, and in which posture the robot waits before it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// How far ahead of the robot the cup stands, metres.
+    pub ahead_m: f64,
+    /// The height of the table, metres.
+    pub top_m: f64,
+    /// Not its home, which would be in the table.
+    pub posture: Option<String>,
+}
+
+/// A table that the robot reaches, by `reach_down`, and that is not in its way at the start, as far as there is one.
+pub(super) fn place(
+    robot: &FileRobot,
+    (home, postures): (&str, &BTreeMap<String, Joints>),
+    reach_down: Option<([f64; 2], f64)>,
+) -> Place {
+    let ([low, high], ahead_m) = reach_down.unwrap_or(([NOWHERE_M; 2], 0.6));
+    let [least, most] = [(low - 0.05).max(0.1), (high - ABOVE_M).max(low - 0.05).clamp(0.1, 0.9)];
+    let rounded = |top: f64| (top * 100.0).round() / 100.0;
+    // Where there is room above it to lift, and the robot's arm is not stretched.
+    let best = (f64::midpoint(low, high) - ABOVE_M).clamp(least, most.max(least));
+    let first = |name: &&String| *name != home;
+    let others = postures.keys().filter(first).map(|name| Some(name.clone()));
+    for posture in std::iter::once(None).chain(others) {
+        let Some(arm) = postures.get(posture.as_deref().unwrap_or(home)) else { continue };
+        let tops = HEIGHTS_M.into_iter().map(|up| best + up).filter(|top| (least..=most.max(least)).contains(top));
+        for top in tops.map(rounded) {
+            if is_clear(robot, arm, ahead_m, top) {
+                return Place { ahead_m, top_m: top, posture };
+            }
+        }
+    }
+    Place { ahead_m, top_m: rounded(best), posture: None }
+}
+
+/// The middle of the table along x, metres.
+fn middle_m(ahead_m: f64) -> f64 {
+    ahead_m - NEAR_M + 0.5 * TABLE_M[0]
+}
+
+/// Is nothing of the robot, its base at the origin, near to table and cup?
+fn is_clear(robot: &FileRobot, arm: &Joints, ahead_m: f64, top_m: f64) -> bool {
+    let table = Shape::cuboid(0.5 * Vector3::from(TABLE_M)).and_then(|shape| Body::single("table", shape));
+    let cup = Shape::cylinder(CUP_M[0], 0.5 * CUP_M[1]).and_then(|shape| Body::single("cup", shape));
+    let (Ok(table), Ok(cup)) = (table, cup) else { return false };
+    let things = [
+        (table, Isometry3::translation(middle_m(ahead_m), 0.0, top_m - 0.5 * TABLE_M[2])),
+        (cup, Isometry3::translation(ahead_m, CUP_LEFT_M, top_m + 0.5 * CUP_M[1])),
+    ];
+    let mut poses = vec![Isometry3::identity(); robot.links().len()];
+    robot.link_poses(&Configuration { base: [0.0; 3], arm: *arm }, robot.hand().max_gap_m(), &mut poses);
+    robot.links().iter().zip(&poses).all(|(link, pose)| {
+        things.iter().all(|(thing, at)| {
+            clearance::between(&link.body, pose, thing, at).is_ok_and(|found| found.distance > APART_M)
+        })
+    })
+}
+
 /// The text of the problem. `robot` are the lines that name the robot in the table `[robot]`; `drives` says whether its base does.
 pub fn problem(inspection: &Inspection, robot: &str, drives: bool) -> String {
-    let ([low, high], ahead) = inspection.reach_down.unwrap_or(([NOWHERE_M; 2], 0.6));
-    // Where there is room above it to lift, and the robot's arm is not stretched.
-    let top = (f64::midpoint(low, high) - ABOVE_M).clamp((low - 0.05).max(0.1), 0.9);
-    let top = (top * 100.0).round() / 100.0;
+    let Place { ahead_m: ahead, top_m: top, posture } = &inspection.place;
+    let posture = posture.as_ref().map_or_else(String::new, |name| format!("\nposture = {name:?}"));
     let (name, postures) = (&inspection.name, &inspection.postures);
     let driving = if drives { "\n  \"Base-Transit\",\n  \"Base-Rigid-Transfer\"," } else { "" };
     let (left, right) = (ahead - 2.5, ahead + 2.5);
-    let middle = ahead - NEAR_M + 0.25;
-    let under = top - 0.02;
+    let middle = middle_m(*ahead);
+    let under = top - 0.5 * TABLE_M[2];
     format!(
         r#"format = "darrt-problem"
 version = 1
@@ -36,7 +111,7 @@ primitives = [
 
 [robot]
 {robot}
-base = [0, 0, 0]
+base = [0, 0, 0]{posture}
 
 [bounds]
 base_x = [-2.5, 2.5]

@@ -76,7 +76,8 @@ pub fn amend(
     }
     if arm_joints.len() < LEAST_JOINTS {
         let why = format!(
-            "is moved by {} joints: the primitives bring the hand down from above, at any heading and lean, and lift it straight up; an              arm that can take the hand to such poses has at least {LEAST_JOINTS} joints, a rail among them",
+            "is moved by {} joints: the primitives bring the hand down from above, at any heading and lean, and lift it straight up; an \
+             arm that can take the hand to such poses has at least {LEAST_JOINTS} joints, a rail among them",
             arm_joints.len()
         );
         return Err(Fault::new("arm.to", why));

@@ -61,6 +61,8 @@ pub(super) struct Robot {
     pub(super) drives_along_heading: bool,
     /// Links that move with the manipulating arm or its fingers, in ascending order.
     arm_links: Vec<usize>,
+    /// By link: its pose in the frame of the robot's root, if it stands there whatever is planned.
+    standing: Vec<Option<Isometry3<f64>>>,
     pub(super) strength: Strength,
 }
 
@@ -114,6 +116,7 @@ impl Robot {
         let self_pairs = self_pairs(&tree, &solids, &facts.self_pairs);
         let table = JointTable::new(description, &tree);
         let arm_links = links_moved(&tree, |variable| roles.get(variable) != Some(&Role::Parked));
+        let standing = standing(&tree, &roles, facts);
         let wrist = facts.arm_joints.last().ok_or_else(|| refuse(&"its arm has no joints"))?;
         let wrist = variable(wrist)?;
         let hand = links_moved(&tree, |variable| variable == wrist);
@@ -140,6 +143,7 @@ impl Robot {
             is_bolted: facts.is_bolted,
             drives_along_heading: facts.drives_along_heading,
             arm_links,
+            standing,
             strength,
         })
     }
@@ -164,22 +168,11 @@ impl Robot {
         self.solids.iter().enumerate().filter(move |(_, solid)| solid.link == link).map(|(index, _)| index)
     }
 
-    /// The height of the lowest point of a solid that no joint moves, above the robot's root: the base keeps it while it
-    /// drives. `None` for a solid that a joint moves.
+    /// The height of the lowest point of a solid that nothing moves but the base, above the robot's root: it keeps it while the base
+    /// drives. `None` for a solid that a joint moves, or that a joint carries of which the problem does not say where it stands.
     pub(super) fn lowest_m(&self, solid: usize) -> Option<f64> {
         let LinkSolid { link, link_from_solid, solid } = self.solids.get(solid)?;
-        let (mut root_from_link, mut link) = (Isometry3::identity(), *link);
-        while let Some(parent) = self.tree.parent(link) {
-            if !matches!(self.tree.motion(link)?, LinkMotion::Fixed) {
-                return None;
-            }
-            root_from_link = self.tree.parent_from_link(link)? * root_from_link;
-            if parent == link {
-                break;
-            }
-            link = parent;
-        }
-        let root_from_solid = root_from_link * link_from_solid;
+        let root_from_solid = self.standing.get(*link)?.as_ref()? * link_from_solid;
         let down = root_from_solid.rotation.inverse() * -Vector3::z();
         Some(root_from_solid.translation.z - solid.shape()?.support_extent(&down))
     }
@@ -279,6 +272,25 @@ fn links_moved(tree: &KinematicTree, moves: impl Fn(usize) -> bool) -> Vec<usize
         is_moved[link] = own || tree.parent(link).is_some_and(|parent| is_moved[parent]);
     }
     is_moved.iter().enumerate().filter(|(_, is_moved)| **is_moved).map(|(link, _)| link).collect()
+}
+
+/// The poses, in the frame of the root, of the links that stand there: no joint is above them but parked ones that the problem puts
+/// somewhere. By link.
+fn standing(tree: &KinematicTree, roles: &[Role], facts: &RobotFacts) -> Vec<Option<Isometry3<f64>>> {
+    let mut values = tree.neutral();
+    let mut is_put = vec![false; values.len()];
+    for (name, value) in &facts.start {
+        let parked = tree.variable_index(name).filter(|variable| roles.get(*variable) == Some(&Role::Parked));
+        if let Some((slot, put)) = parked.and_then(|v| Some((values.get_mut(v)?, is_put.get_mut(v)?))) {
+            (*slot, *put) = (*value, true);
+        }
+    }
+    let mut poses = vec![Isometry3::identity(); tree.link_count()];
+    if tree.forward(&values, &Isometry3::identity(), &mut poses).is_err() {
+        return vec![None; poses.len()];
+    }
+    let moved = links_moved(tree, |variable| is_put.get(variable) != Some(&true));
+    poses.into_iter().enumerate().map(|(link, pose)| (!moved.contains(&link)).then_some(pose)).collect()
 }
 
 /// Where a base at x, y and yaw has the robot's root.

@@ -16,6 +16,10 @@ const FINGER_M: f64 = 0.02;
 /// How far pads may turn, radians, and how far ends are the same, metres.
 const PARALLEL_RAD: f64 = 1e-6;
 const SAME_M: f64 = 1e-6;
+/// Tips whose distance changes less, metres, do not open.
+const OPENS_M: f64 = 1e-3;
+/// An arm that can take a hand to a pose has so many joints at least.
+const ARM_JOINTS: usize = 6;
 /// A finger has at most so many joints.
 const MOST_FINGER_JOINTS: usize = 3;
 
@@ -49,15 +53,32 @@ pub(super) fn guess(tree: &KinematicTree, bodies: &[Option<Body>]) -> Option<Han
         let fingers: Vec<_> = children(tree, link).filter_map(|child| finger(tree, bodies, child)).collect();
         (fingers.len() >= 2).then(|| (joints_above(tree, link), link, fingers))
     });
-    // Of two arms the first.
-    let best = candidates.reduce(|best, next| if next.0 > best.0 { next } else { best });
-    let (_, link, fingers) = best.filter(|(above, ..)| *above > 0)?;
-    // Of those whose pads stay parallel, the two that reach farthest out; a hand may have links beside the fingers that guide them.
+    // Of two arms the first. What fewer joints carry than an arm has is a head, say.
+    let mut hands: Vec<_> = candidates
+        .filter(|(above, ..)| *above > 0)
+        .filter_map(|(above, link, fingers)| Some((above, best_pair(tree, bodies, link, &fingers)?)))
+        .collect();
+    hands.sort_by_key(|(above, _)| std::cmp::Reverse(*above));
+    let best = |is_parallel: bool| {
+        let mut arms = hands.iter().filter(|(above, _)| *above >= ARM_JOINTS);
+        arms.find(|(_, (_, parallel))| *parallel || !is_parallel).map(|(_, (hand, _))| hand.clone())
+    };
+    best(true).or_else(|| best(false))
+}
+
+/// Of the fingers of a hand whose pads stay parallel the two that reach farthest out, or any two; and do they? A hand may have links
+/// beside the fingers that guide them.
+fn best_pair(
+    tree: &KinematicTree,
+    bodies: &[Option<Body>],
+    link: usize,
+    fingers: &[Finger],
+) -> Option<(HandGuess, bool)> {
     let pairs = fingers.iter().enumerate().flat_map(|(at, a)| fingers.iter().skip(at + 1).map(move |b| [a, b]));
     let found: Vec<_> = pairs.filter_map(|pair| describe(tree, bodies, link, pair)).collect();
     let parallel = found.iter().filter(|(_, is_parallel, _)| *is_parallel);
     let best = parallel.reduce(|best, next| if next.2 > best.2 + SAME_M { next } else { best });
-    best.or(found.first()).map(|(hand, ..)| hand.clone())
+    best.or(found.first()).map(|(hand, is_parallel, _)| (hand.clone(), *is_parallel))
 }
 
 pub(super) fn children(tree: &KinematicTree, link: usize) -> impl Iterator<Item = usize> + '_ {
@@ -188,10 +209,18 @@ fn describe(
         let mut poses = vec![Isometry3::identity(); tree.link_count()];
         tree.forward(&values, &Isometry3::identity(), &mut poses).ok()?;
         let hand = poses.get(hand)?.inverse();
-        Some([(hand * poses.get(tips[0])?).rotation, (hand * poses.get(tips[1])?).rotation])
+        Some([hand * poses.get(tips[0])?, hand * poses.get(tips[1])?])
     };
     let (closed, open) = (turned(false)?, turned(true)?);
-    let is_parallel = closed.iter().zip(&open).all(|(closed, open)| closed.angle_to(open) <= PARALLEL_RAD);
+    let gap = |at: &[Isometry3<f64>; 2]| (at[0].translation.vector - at[1].translation.vector).dot(&y);
+    if closed.iter().zip(&open).all(|(closed, open)| closed.rotation.angle_to(&open.rotation) <= PARALLEL_RAD)
+        && (gap(&closed) - gap(&open)).abs() < OPENS_M
+    {
+        // Two parts that move together are one finger.
+        return None;
+    }
+    let is_parallel =
+        closed.iter().zip(&open).all(|(closed, open)| closed.rotation.angle_to(&open.rotation) <= PARALLEL_RAD);
     let hand = HandGuess {
         link: name(hand)?,
         on: name(hand)?,

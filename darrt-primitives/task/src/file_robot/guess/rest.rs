@@ -10,6 +10,7 @@ use rand::RngExt as _;
 use super::super::semantic::{Disabled, Semantic};
 use super::super::travel::corners;
 use super::hand::variable_of;
+use super::posture::Footprint;
 
 /// So many turning joints in a row are another arm or a leg; of more only the first are tucked, for the last are fingers.
 const LEAST_JOINTS: usize = 5;
@@ -35,12 +36,13 @@ pub(super) struct Limb {
     pub(super) state: Option<String>,
 }
 
-/// The limbs that none of the joints `mine` belongs to, each in that of the postures tried in which it reaches least far from the
-/// middle of the robot, and touches nothing. A limb that touches something in all of them is left out.
+/// The limbs that none of the joints `mine` belongs to, each in that of the postures tried in which it is least in the way, and
+/// touches nothing; joints of `lifts` stand at their values. A limb that touches something in all of them is left out.
 pub(super) fn limbs(
     (description, tree): (&RobotDescription, &KinematicTree),
     bodies: &[Option<Body>],
     mine: &[String],
+    lifts: &[(String, f64)],
     semantic: Option<&Semantic>,
 ) -> Vec<Limb> {
     let mut rng = stream(0, 5, 0, Purpose::Extend);
@@ -57,6 +59,12 @@ pub(super) fn limbs(
         }
     }
     let mut values = tree.neutral();
+    for (name, value) in lifts {
+        if let Some(slot) = tree.variable_index(name).and_then(|variable| values.get_mut(variable)) {
+            *slot = *value;
+        }
+    }
+    let footprint = footprint(tree, bodies, &values);
     let mut found = Vec::new();
     for mut row in rows {
         row.truncate(MOST_JOINTS);
@@ -65,7 +73,7 @@ pub(super) fn limbs(
         let states = semantic.iter().flat_map(|semantic| semantic.states(description, &names));
         let states: Vec<_> = states.map(|(name, values)| (name.to_owned(), values)).collect();
         let disabled = semantic.map_or(&[][..], |semantic| &semantic.disabled);
-        let limb = Row { tree, bodies, variables: &row, disabled };
+        let limb = Row { tree, bodies, variables: &row, disabled, footprint };
         let Some((chosen, state)) = limb.tucked(&values, &states, &mut rng) else { continue };
         for (variable, value) in row.iter().zip(&chosen) {
             if let Some(slot) = values.get_mut(*variable) {
@@ -118,10 +126,31 @@ struct Row<'a> {
     variables: &'a [usize],
     /// Pairs that the SRDF does not check.
     disabled: &'a [Disabled],
+    /// Of what no joint moves but wheels.
+    footprint: Footprint,
+}
+
+/// What the robot stands on, in the frame of its root: all that is rigid to it, and the floor under the lowest point of all.
+fn footprint(tree: &KinematicTree, bodies: &[Option<Body>], values: &[f64]) -> Footprint {
+    let mut poses = vec![Isometry3::identity(); tree.link_count()];
+    // The values are the tree's own, so there are as many as it wants.
+    let _ = tree.forward(values, &Isometry3::identity(), &mut poses);
+    let points = |is_of: &dyn Fn(usize) -> bool| -> Vec<_> {
+        let placed = bodies.iter().zip(&poses).enumerate().filter(|(link, _)| is_of(*link));
+        placed
+            .filter_map(|(_, (body, pose))| Some((body.as_ref()?, pose)))
+            .flat_map(|(body, pose)| corners(body).into_iter().map(move |corner| pose * corner))
+            .collect()
+    };
+    let floor_m = points(&|_| true).iter().map(|at| at.z).fold(0.0, f64::min);
+    let is_rigid = |link: usize| {
+        std::iter::successors(Some(link), |at| tree.parent(*at)).all(|at| variable_of(tree, at).is_none())
+    };
+    Footprint::of(points(&is_rigid).into_iter(), floor_m)
 }
 
 impl Row<'_> {
-    /// The values with which it reaches least far, and which state of the SRDF they are. All else stands as in `rest`.
+    /// The values with which it is least in the way, and which state of the SRDF they are. All else stands as in `rest`.
     fn tucked(
         &self,
         rest: &[f64],
@@ -185,7 +214,7 @@ impl Row<'_> {
         Some((best, None))
     }
 
-    /// How far the limb reaches from the middle of the robot, and which of its links are near which other ones.
+    /// How much the limb is in the way, and which of its links are near which other ones.
     fn seen(&self, rest: &[f64], joints: &[f64], mine: &[usize], others: &[usize]) -> Option<(f64, Vec<bool>)> {
         let mut values = rest.to_vec();
         for (variable, value) in self.variables.iter().zip(joints) {
@@ -200,7 +229,7 @@ impl Row<'_> {
             let (shape, pose) = body(*link)?;
             for corner in corners(shape) {
                 let at = pose * corner;
-                reach_m = reach_m.max(at.x.hypot(at.y));
+                reach_m = reach_m.max(self.footprint.in_the_way_m(&at));
             }
             for other in others {
                 let (shape_there, there) = body(*other)?;

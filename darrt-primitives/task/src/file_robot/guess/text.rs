@@ -29,13 +29,19 @@ pub(super) struct Guess {
     pub(super) base: &'static str,
     /// Where other limbs rest.
     pub(super) rest: Vec<Limb>,
+    /// Where the joints stand that lift the arm, metres.
+    pub(super) lifts: Vec<(String, f64)>,
     /// Postures of the arm that the SRDF names.
     pub(super) states: Vec<State>,
     /// SRDFs that cannot be read, and why.
     pub(super) unread: Vec<(PathBuf, String)>,
     pub(super) home: Vec<f64>,
+    /// Another posture, the hand pointing down.
+    pub(super) hand_down: Option<Vec<f64>>,
     /// How far the root must be raised, metres.
     pub(super) base_z: f64,
+    /// It is raised as if it stood on something.
+    pub(super) pedestal: bool,
     /// With the share of configurations in which they touch.
     pub(super) ignore: Vec<([String; 2], String)>,
 }
@@ -45,12 +51,14 @@ fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
+fn number(value: f64) -> String {
+    let rounded = (value * 1e6).round() / 1e6;
+    // No minus before a zero.
+    format!("{}", rounded + 0.0)
+}
+
 fn numbers(values: &[f64]) -> String {
-    let values = values.iter().map(|value| {
-        let rounded = (value * 1e6).round() / 1e6;
-        // No minus before a zero.
-        format!("{}", rounded + 0.0)
-    });
+    let values = values.iter().map(|value| number(*value));
     format!("[{}]", values.collect::<Vec<_>>().join(", "))
 }
 
@@ -102,11 +110,16 @@ impl Guess {
             quoted(self.base)
         ));
         if self.base_z > 0.0 {
-            line(format!("xyz = [0, 0, {}]            # its lowest point is on the floor", self.base_z));
+            let why = if self.pedestal {
+                "# ? as if it stood on something so high; 0 if it stands on the floor"
+            } else {
+                "# its lowest point is on the floor"
+            };
+            line(format!("xyz = [0, 0, {}]            {why}", self.base_z));
         }
         line(format!("\n[arm]                           # joints: {}", self.arm.joints.join(", ")));
         line(format!("from = {}\nto = {}", quoted(&self.arm.from), quoted(&self.arm.to)));
-        line("payload_kg = 1.0                # ? see the data sheet\npush_force_n = 20               # ? sideways, at the hand".to_owned());
+        line("payload_kg = 2.0                # ? see the data sheet\npush_force_n = 30               # ? sideways, at the hand".to_owned());
         line("\n[tool]                          # ? x out of the hand, y the way the fingers open, in the middle between the pads".to_owned());
         let hand = &self.hand;
         if let Some(built) = &hand.built {
@@ -121,11 +134,8 @@ impl Guess {
         }
         line(format!("\n[gripper]\njoint = {}", quoted(&hand.joint)));
         line(format!("tips = {}      # that on the side of the tool's +y first", names(&hand.tips)));
-        line(format!(
-            "pad_length_m = {}            # ? from the tip back",
-            numbers(&[hand.pad_length_m]).trim_matches(['[', ']'])
-        ));
-        line("grip_force_n = 30               # ? of each finger".to_owned());
+        line(format!("pad_length_m = {}            # ? from the tip back", number(hand.pad_length_m)));
+        line("grip_force_n = 100              # ? of each finger; see the data sheet".to_owned());
         for (name, multiplier) in &hand.follow {
             line(format!(
                 "follow.{} = {{ multiplier = {multiplier} }}     # ? the description lets it move freely",
@@ -136,22 +146,30 @@ impl Guess {
             "\n[postures]                      # a value for each joint of the arm\nhome = {}",
             numbers(&self.home)
         ));
-        for State { name, values, is_within } in self.states.iter().filter(|state| state.name != "home") {
+        if let Some(values) = &self.hand_down {
+            line(format!("hand-down = {}", numbers(values)));
+        }
+        for State { name, values, is_within } in
+            self.states.iter().filter(|state| !["home", "hand-down"].contains(&&*state.name))
+        {
             if *is_within {
                 line(format!("{} = {}      # of the SRDF", quoted(name), numbers(values)));
             } else {
                 line(format!("# beyond the limits of the joints: {} = {}", quoted(name), numbers(values)));
             }
         }
-        if !self.rest.is_empty() {
+        if !(self.rest.is_empty() && self.lifts.is_empty()) {
             line("\n[rest]                          # ? where other limbs are out of the way".to_owned());
+        }
+        for (name, value) in &self.lifts {
+            line(format!("{} = {}      # ? a lift, halfway up", quoted(name), number(*value)));
         }
         for limb in &self.rest {
             if let Some(state) = &limb.state {
                 line(format!("# the posture {state} of the SRDF"));
             }
             for (name, value) in &limb.joints {
-                line(format!("{} = {}", quoted(name), numbers(&[*value]).trim_matches(['[', ']'])));
+                line(format!("{} = {}", quoted(name), number(*value)));
             }
         }
         out
