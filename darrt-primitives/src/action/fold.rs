@@ -104,6 +104,9 @@ pub(super) fn order<M: Manipulator>(
     cheapest.or_else(less).or(chooser.fallback).unwrap_or(Order::BaseFirst)
 }
 
+/// A way to hold the arm: what it costs in metres, the order, and the arm on the drive.
+type Choice<J> = (f64, Order<J>, J);
+
 /// The best of some ways to hold the arm.
 enum Best<J> {
     /// The cheapest with which the straight drive is clear.
@@ -136,7 +139,7 @@ struct Chooser<'a, M: Manipulator> {
 
 impl<M: Manipulator> Chooser<'_, M> {
     /// The best of `choices`, which are sorted by cost; those with which the robot is too wide for a passage last.
-    fn best(&mut self, choices: &[(f64, Order<M::Joints>, M::Joints)], care: usize) -> Best<M::Joints> {
+    fn best(&mut self, choices: &[Choice<M::Joints>], care: usize) -> Best<M::Joints> {
         // OPTIMIZATION: how wide the robot is with an arm is asked only of the arms that are looked at.
         let mut wide: Vec<Option<bool>> = vec![None; choices.len()];
         let mut fits = None;
