@@ -253,7 +253,7 @@ fn what_is_read_is_never_written_over() {
     let folder = folder.path();
     solved_problem(folder);
     run(folder, &["plan", "easy.toml", "-o", "old.json", "--no-picture", "-q"], 0);
-    std::fs::write(folder.join("noise.toml"), run(folder, &["execute"], 0).0).unwrap();
+    std::fs::write(folder.join("noise.toml"), run(folder, &["execute", "--print-noise"], 0).0).unwrap();
     let inputs = ["easy.toml", "old.json", "noise.toml"];
     let before = inputs.map(|name| std::fs::read(folder.join(name)).unwrap());
     for arguments in [

@@ -8,17 +8,11 @@
 )]
 
 use std::path::Path;
-use std::process::{Command, Output};
 
-fn darrt(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_darrt")).args(arguments).current_dir(folder).output().unwrap()
-}
+use crate::program::run;
 
 fn done(folder: &Path, arguments: &[&str]) -> String {
-    let output = darrt(folder, arguments);
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success(), "{arguments:?}: {said}{}", String::from_utf8_lossy(&output.stderr));
-    said
+    run(folder, arguments, 0).0
 }
 
 /// A box as an OBJ.

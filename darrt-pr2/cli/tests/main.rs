@@ -7,6 +7,7 @@ mod cli_execute;
 mod cli_export;
 mod cli_plan;
 mod cli_robot;
+mod cli_robot_new;
 mod cli_usage;
 mod house;
 mod no_plan;

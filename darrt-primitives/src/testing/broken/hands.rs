@@ -80,7 +80,7 @@ fn arms() -> Vec<Case> {
                 robot.poses = |q, gap_m| poses(&stiff(q), gap_m);
                 robot.inverse = |base, tool, rng| motion::inverse(base, tool, rng).and_then(unturned);
                 robot.near = |base, tool, near| {
-                    let mut found = motion::near(base, tool, near).and_then(|found| unturned(found))?;
+                    let mut found = motion::near(base, tool, near).and_then(unturned)?;
                     found[6] = near[6];
                     Some(found)
                 };

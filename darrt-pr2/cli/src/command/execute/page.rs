@@ -2,7 +2,7 @@
 
 use darrt_execute::RunReport;
 use darrt_execute::recording::{Frame, Recording};
-use darrt_task::picture::{self, Extent, Story, palette};
+use darrt_task::picture::{self, Act, Extent, Story, palette};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::robot::RobotFacts;
 use darrt_task::viewer::data::{
@@ -32,8 +32,8 @@ pub(super) fn file(
     let story = Story::of_plan(plan, facts)?;
     let planned = viewer::of_problem(&plan.problem, &plan.start, &robot)?;
     let colour = |name: &str| {
-        let step = story.steps.iter().find(|step| step.primitive.as_str() == name);
-        step.map_or(OTHER, |step| palette::of(step.act))
+        let contract = plan.contracts.get(name);
+        contract.map_or(OTHER, |contract| palette::of(Act::of(contract)))
     };
     let mut objects = planned.objects.clone();
     let marks = planned.objects.iter().map(|object| {

@@ -142,6 +142,12 @@ impl Guess {
                 quoted(name)
             ));
         }
+        self.standing(&mut line);
+        out
+    }
+
+    /// Where the arm and the other limbs stand.
+    fn standing(&self, line: &mut dyn FnMut(String)) {
         line(format!(
             "\n[postures]                      # a value for each joint of the arm\nhome = {}",
             numbers(&self.home)
@@ -172,6 +178,5 @@ impl Guess {
                 line(format!("{} = {}", quoted(name), number(*value)));
             }
         }
-        out
     }
 }
