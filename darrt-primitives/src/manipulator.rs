@@ -111,7 +111,7 @@ pub trait Hand: Send + Sync {
 /// use darrt_primitives::manipulator::{Configuration, Hand, LinkGroup, Manipulator, RobotLink, world_from_base};
 /// # use darrt_geom::{body::Body, shape::Shape};
 /// # use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
-/// # use rand::Rng;
+/// # use rand::{Rng, RngExt};
 ///
 /// struct Jaw;
 /// impl Hand for Jaw {
@@ -149,9 +149,9 @@ pub trait Hand: Send + Sync {
 ///     fn inverse_near(&self, base: &[f64; 3], tool: &Isometry3<f64>, _near: &[f64; 3]) -> Option<[f64; 3]> {
 ///         self.solve(base, tool)
 ///     }
-///     fn base_for(&self, tool: &Isometry3<f64>, _: &mut dyn Rng) -> [f64; 3] {
-///         let ahead = tool * Vector3::z(); // the x axis of the base
-///         [tool.translation.x, tool.translation.y, ahead.y.atan2(ahead.x)]
+///     fn base_for(&self, tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] {
+///         let ahead = tool * Vector3::z() * rng.random_range(0.1..0.9); // along the x axis of the base
+///         [tool.translation.x - ahead.x, tool.translation.y - ahead.y, ahead.y.atan2(ahead.x)]
 ///     }
 ///     fn may_reach(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> bool { self.solve(base, tool).is_some() }
 ///     fn link_poses(&self, q: &Configuration<[f64; 3]>, gap_m: f64, out: &mut [Isometry3<f64>]) {

@@ -32,7 +32,7 @@ pub const REFUSAL: &str =
 /// Measured clearances.
 pub const CLEARANCE: &str = "verifier.clearance: a clearance of an accepted plan is finite and not negative";
 /// Accepts.
-pub const ACCEPTS: &str = "verifier.accepts: of many ways that the search found free one at least is accepted, for the goal to be where it ends";
+pub const ACCEPTS: &str = "verifier.accepts: of many ways that the search found free not all are refused at one of their steps, for the goal to be where each ends";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[REFUSES, STEADY, ITS_GOAL, REFUSAL, CLEARANCE, ACCEPTS];

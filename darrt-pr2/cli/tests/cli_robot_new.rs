@@ -9,7 +9,7 @@
 
 use std::path::Path;
 
-use crate::program::run;
+use crate::program::{darrt, run};
 
 fn done(folder: &Path, arguments: &[&str]) -> String {
     run(folder, arguments, 0).0

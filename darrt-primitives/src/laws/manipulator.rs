@@ -117,7 +117,8 @@ pub const CENTRED: &str = "manipulator.centred: the tool is midway between the f
 /// Room for what is grasped.
 pub const CLEAR: &str = "manipulator.clear: no link of the hand is between the tips, or ahead of them";
 /// Variety of bases.
-pub const BASE_VARIED: &str = "manipulator.base-varied: base_for does not always draw the same base";
+pub const BASE_VARIED: &str =
+    "manipulator.base-varied: base_for of a robot that drives does not always draw the same base";
 /// Steps.
 pub const NEAR_FINDS: &str =
     "manipulator.near-finds: of twelve short straight steps of the hand an arm of six joints or more can take one";

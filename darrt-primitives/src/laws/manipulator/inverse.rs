@@ -1,7 +1,7 @@
 //! Configurations and bases for a pose of the hand.
 
 use darrt_core::laws::{Broken, at_most, ensure, equal};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Translation3};
 
 use super::{
     BASE_FOR, BASE_VARIED, INVERSE_LIMITS, INVERSE_POSE, MAY_REACH, NEAR_SELF, PURE, SEEDED, Trial, same_pose,
@@ -77,7 +77,10 @@ impl<M: Manipulator> Trial<'_, M> {
             ensure(BASE_FOR, is_place, || format!("{other:?}"), "finite, yaw in [-pi, pi]")?;
             differs |= other != base;
         }
-        ensure(BASE_VARIED, differs, || format!("{BASES} times {base:?}"), "different ones")?;
+        // One that stands where it stands wherever its hand shall be is bolted down.
+        let elsewhere = Translation3::new(1.0, 1.0, 0.0) * tool;
+        let is_bolted = self.robot.base_for(&elsewhere, &mut self.rng(0)) == base;
+        ensure(BASE_VARIED, differs || is_bolted, || format!("{BASES} times {base:?}"), "different ones")?;
         self.drawn(&base, tool)
     }
 

@@ -64,13 +64,13 @@ impl Old<'_> {
             let objects = &self.end(first).objects;
             let still = (first..of).take_while(|count| self.end(*count).objects == *objects);
             let join = still.filter(|count| self.is_free_after(*count)).last()?;
-            let tail = PlanFile {
-                problem: self.rest(join)?,
-                start: self.end(join).clone(),
-                steps: self.file.steps.get(join..)?.to_vec(),
-                ..self.file.clone()
-            };
-            match verify_unless(&tail, self.facts, &VerifyOptions::default(), self.cancel) {
+            let (start, steps) = (self.end(join).clone(), self.file.steps.get(join..)?.to_vec());
+            let mut facts = self.facts.clone();
+            for (name, value) in &mut facts.start {
+                *value = *start.joints.get(name.as_str())?;
+            }
+            let tail = PlanFile { problem: self.rest(join)?, start, steps, ..self.file.clone() };
+            match verify_unless(&tail, &facts, &VerifyOptions::default(), self.cancel) {
                 Ok(_) => return Some(join),
                 // At the goal, or at one of its steps.
                 Err(refusal) => bad = join + (refusal.step?.checked_sub(1)? as usize),

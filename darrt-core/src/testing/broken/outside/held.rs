@@ -316,7 +316,7 @@ impl Verifier<Bench> for Stern {
         plan: &Plan<Bench>,
     ) -> Result<Verified, Refusal> {
         if self.0 {
-            return Err(Refusal { step: None, at: 0.0, reason: "not good enough".to_owned() });
+            return Err(Refusal { step: Some(0), at: 0.0, reason: "not good enough".to_owned() });
         }
         Replay::new(Rule::default(), 1e-3).verify(m, start, goal, plan)
     }

@@ -104,12 +104,13 @@ contact_margin_m = 0.0001
     #[test]
     fn no_sheet_is_too_thin_to_be_seen() {
         let problem = ProblemFile::from_toml(CARD, "card").unwrap();
-        let plan = planned(&PlanRequest::new(problem, 1)).plan.unwrap();
+        // One in which the card moves across itself.
+        let plans = (0..12).filter_map(|seed| planned(&PlanRequest::new(problem.clone(), seed)).plan);
+        let found = plans.map(|plan| (places(&plan), plan)).find(|(places, _)| places.len() >= 8);
+        let (places, plan) = found.expect("a plan in which the card moves across itself");
         let facts = facts(&plan.problem);
         verify(&plan, &facts).unwrap();
-        let places = places(&plan);
         let step = places.len().div_ceil(8);
-        assert!(places.len() >= 8, "the card hardly moves across itself");
         for thickness_m in [2e-4, 5e-5, 1e-5] {
             for place in places.iter().step_by(step) {
                 let mut plan = plan.clone();
