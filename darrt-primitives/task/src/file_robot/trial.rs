@@ -27,6 +27,9 @@ const APART_M: f64 = 0.03;
 /// Heights that are tried, from the best one, metres.
 const HEIGHTS_M: [f64; 9] = [0.0, -0.1, 0.1, -0.2, 0.2, -0.3, 0.3, -0.4, 0.4];
 
+/// How much farther ahead than the hand reaches first the table is tried, metres.
+const FARTHER_M: [f64; 3] = [0.0, 0.1, 0.25];
+
 /// Where the table stands, and in which posture the robot waits before it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Place {
@@ -51,12 +54,16 @@ pub(super) fn place(
     let best = (f64::midpoint(low, high) - ABOVE_M).clamp(least, most.max(least));
     let first = |name: &&String| *name != home;
     let others = postures.keys().filter(first).map(|name| Some(name.clone()));
-    for posture in std::iter::once(None).chain(others) {
+    let waiting: Vec<_> = std::iter::once(None).chain(others).collect();
+    // Farther ahead only where nothing is free nearer: there the arm may be stretched.
+    let tries = FARTHER_M.into_iter().flat_map(|farther_m| waiting.iter().map(move |posture| (farther_m, posture)));
+    for (farther_m, posture) in tries {
+        let ahead_m = ahead_m + farther_m;
         let Some(arm) = postures.get(posture.as_deref().unwrap_or(home)) else { continue };
         let tops = HEIGHTS_M.into_iter().map(|up| best + up).filter(|top| (least..=most.max(least)).contains(top));
         for top in tops.map(rounded) {
             if is_clear(robot, arm, ahead_m, top) {
-                return Place { ahead_m, top_m: top, posture };
+                return Place { ahead_m, top_m: top, posture: posture.clone() };
             }
         }
     }
