@@ -60,7 +60,7 @@ pub trait ExecutionCost<D: Domain>: Send + Sync {
     /// Objects where they may be left on the way of a manipulation that takes them from where they are in `from` to where they
     /// are in `to`: with another manipulation in the plan the next [`arrival`](Self::arrival) may cost less. `None` if there is
     /// nothing to propose.
-    fn detour(&self, _m: &D, _from: &State<D>, _to: &State<D>, _rng: &mut dyn Rng) -> Option<PartialState<D>> {
+    fn stopover(&self, _m: &D, _from: &State<D>, _to: &State<D>, _rng: &mut dyn Rng) -> Option<PartialState<D>> {
         None
     }
 }

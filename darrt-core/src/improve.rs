@@ -4,17 +4,17 @@
 //! |---|---|
 //! | the plan becomes a graph of manipulations and of ways between them | `pieces`, `roadmap` |
 //! | manipulations are drawn anew, nearer to those before and behind them, or leading farther | `draw` |
-//! | one becomes two, where the cost says that the second makes up for what the first leaves uncertain | `detour` |
+//! | one becomes two, where the cost says that the second makes up for what the first leaves uncertain | `stopover` |
 //! | the cheapest chain is judged until every motion of it is free | `judge` |
 //! | shortcuts between any two of its states | [`smooth`](crate::smooth) |
 //!
 //! The effort is counted in extensions, and no clock is read: the same plan and the same random numbers give the same result.
 
-mod detour;
 mod draw;
 mod judge;
 pub(crate) mod pieces;
 mod roadmap;
+mod stopover;
 
 use std::fmt;
 

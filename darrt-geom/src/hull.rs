@@ -36,13 +36,26 @@ impl ConvexHull {
     /// the finished hull from holding every point.
     pub fn new(name: &str, points: &[Point3<f64>]) -> Result<Self, GeomError> {
         let (distinct, size) = Self::checked(name, points)?;
+        Self::sound(name, Self::built(&distinct), &distinct, size)
+    }
+
+    /// The hull of different points as it is built; `None` if that fails.
+    fn built(distinct: &[Point3<f64>]) -> Option<Self> {
+        let (vertices, triangles, polyhedron) = build(distinct)?;
+        Some(Self { vertices, triangles, parry: SharedShape::new(polyhedron) })
+    }
+
+    /// How far the point that is farthest outside lies beyond a face, as a share of the extent of the points.
+    fn outlier(&self, points: &[Point3<f64>], size: f64) -> f64 {
+        largest_outlier(&self.vertices, &self.triangles, points) / size
+    }
+
+    /// `hull` if there is one, and it holds the points.
+    fn sound(name: &str, hull: Option<Self>, points: &[Point3<f64>], size: f64) -> Result<Self, GeomError> {
         let failed = |outlier| GeomError::UnsoundHull { name: name.to_owned(), outlier, maximum: TOLERANCE };
-        let (vertices, triangles, polyhedron) = build(&distinct).ok_or_else(|| failed(1.0))?;
-        let outlier = largest_outlier(&vertices, &triangles, &distinct) / size;
-        if outlier.is_nan() || outlier > TOLERANCE {
-            return Err(failed(outlier));
-        }
-        Ok(Self { vertices, triangles, parry: SharedShape::new(polyhedron) })
+        let hull = hull.ok_or_else(|| failed(1.0))?;
+        let outlier = hull.outlier(points, size);
+        if outlier.is_nan() || outlier > TOLERANCE { Err(failed(outlier)) } else { Ok(hull) }
     }
 
     /// The different points, and their extent.

@@ -137,7 +137,7 @@ struct Finder<'a, M: Manipulator> {
 
 /// The poses of a way, and what it would cost if there were room everywhere.
 #[derive(Debug, Clone, PartialEq)]
-struct Way {
+struct FoundPath {
     poses: Vec<[f64; 3]>,
     open_cost_m: f64,
 }
@@ -172,7 +172,7 @@ impl<M: Manipulator> Finder<'_, M> {
     }
 
     /// The cheapest way that keeps the least margins.
-    fn shortest(&mut self) -> Option<Way> {
+    fn shortest(&mut self) -> Option<FoundPath> {
         let around = self.m.collision_scene();
         let [_, least_m] = around.drive_margins_m(0);
         let (mut footprint, terms, has_forgiven) = self.sight_terms(least_m);
@@ -201,7 +201,7 @@ impl<M: Manipulator> Finder<'_, M> {
     }
 
     /// A way with this care that is not much longer than the shortest one.
-    fn roomier(&mut self, care: usize, shortest: &Way) -> Option<Vec<[f64; 3]>> {
+    fn roomier(&mut self, care: usize, shortest: &FoundPath) -> Option<Vec<[f64; 3]>> {
         let around = self.m.collision_scene();
         let [margin_m, _] = around.drive_margins_m(care);
         let (mut footprint, terms, has_forgiven) = self.sight_terms(margin_m);
@@ -224,7 +224,7 @@ impl<M: Manipulator> Finder<'_, M> {
 #[derive(Debug, Clone, PartialEq)]
 enum Trial {
     /// The poses of a way.
-    Found(Way),
+    Found(FoundPath),
     /// No way, but a finer lattice may have one.
     Hope,
     /// No way, nor a passage that is wide enough, or nearly.
@@ -259,7 +259,7 @@ fn way_along(level: Level, [start, goal]: [&[f64; 3]; 2], sight: &mut Sight<'_>,
                     _ => 0.0,
                 };
                 let open_cost_m = poses.windows(2).map(open_m).sum();
-                Trial::Found(Way { poses, open_cost_m })
+                Trial::Found(FoundPath { poses, open_cost_m })
             }
             None => Trial::Hope,
         },

@@ -63,7 +63,7 @@ impl<M: Manipulator> ExecutionCost<Tabletop<M>> for Success {
     }
 
     /// The object that is moved, beside where it shall be.
-    fn detour(
+    fn stopover(
         &self,
         m: &Tabletop<M>,
         from: &TabletopState<M>,

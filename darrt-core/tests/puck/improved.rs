@@ -84,7 +84,7 @@ impl ExecutionCost<World> for NearBy {
         if m.robot().distance(&last.robot, &entry.robot) > 0.3 { 3.0 } else { 0.0 }
     }
 
-    fn detour(
+    fn stopover(
         &self,
         m: &World,
         from: &State<World>,

@@ -1,9 +1,8 @@
 //! A hull with few corners around one with many: what a distance costs grows with the corners.
 
-use super::{ConvexHull, TOLERANCE, build, largest_outlier};
+use super::{ConvexHull, TOLERANCE};
 use crate::error::GeomError;
 use nalgebra::{Matrix3, Point3, Vector3};
-use parry3d_f64::shape::SharedShape;
 
 /// Three planes nearer to having no common point than this (the determinant of their normals) have none.
 const PARALLEL: f64 = 1e-9;
@@ -39,18 +38,19 @@ impl ConvexHull {
     /// No point lies outside, but for rounding.
     pub fn around(name: &str, points: &[Point3<f64>], most: usize) -> Result<(Self, f64), GeomError> {
         let (distinct, size) = Self::checked(name, points)?;
-        if let Some((vertices, triangles, parry)) = build(&distinct) {
-            let hull = Self { vertices, triangles, parry: SharedShape::new(parry) };
-            // A cover that rounding has spoilt, or that saves nothing, is none; a NaN neither.
-            let holds = |hull: &Self| largest_outlier(&hull.vertices, &hull.triangles, &distinct) / size <= TOLERANCE;
-            let cover = if hull.vertices.len() > most { planes_around(&hull, most) } else { None };
+        let hull = Self::built(&distinct);
+        if let Some(hull) = hull.as_ref().filter(|hull| hull.vertices.len() > most) {
+            let cover = planes_around(hull, most);
             let cover = cover.and_then(|(corners, beyond_m)| Some((Self::new(name, &corners).ok()?, beyond_m)));
-            let saves = |cover: &Self| cover.vertices.len() < hull.vertices.len();
-            if let Some(found) = cover.filter(|(cover, _)| saves(cover) && holds(cover)) {
+            // A cover that rounding has spoilt, or that saves nothing, is none; a NaN neither.
+            let is_good = |cover: &Self| {
+                cover.vertices.len() < hull.vertices.len() && cover.outlier(&distinct, size) <= TOLERANCE
+            };
+            if let Some(found) = cover.filter(|(cover, _)| is_good(cover)) {
                 return Ok(found);
             }
         }
-        Ok((Self::new(name, points)?, 0.0))
+        Ok((Self::sound(name, hull, &distinct, size)?, 0.0))
     }
 }
 
@@ -136,6 +136,7 @@ fn common(planes: &[Plane; 3]) -> Option<Point3<f64>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::largest_outlier;
     use super::*;
     use std::f64::consts::PI;
 

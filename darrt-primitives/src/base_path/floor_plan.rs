@@ -85,12 +85,10 @@ impl FloorPlan {
     /// Only so many gaps are kept, the narrowest: where there are more of them among near neighbours, those farther apart need not
     /// be looked at.
     fn find_gaps(&mut self) {
-        let (count, mut up_to_m) = (self.obstacles.len(), WIDE_M);
-        // So few pairs that all are kept.
+        let count = self.obstacles.len();
+        // Of so few pairs all are kept.
         let is_small = count * count.saturating_sub(1) / 2 <= MOST_GAPS;
-        if !is_small {
-            up_to_m = LEAST_WIDE_M;
-        }
+        let mut up_to_m = if is_small { WIDE_M } else { LEAST_WIDE_M };
         loop {
             self.gaps = self.gaps_below(up_to_m);
             if up_to_m >= WIDE_M || self.gaps.len() > MOST_GAPS {

@@ -20,7 +20,8 @@ use crate::export::Exporter;
 use crate::plan_file::{Partial, PlanFile, PlannerFacts, Pose, Step, Waypoint};
 use crate::planning::{PlanRequest, PlanResult, plan_without_clock};
 use crate::planning_error::PlanningError;
-use crate::problem_file::ProblemFile;
+use crate::problem_file::geometry::{Geometry, StartingObject};
+use crate::problem_file::{Object, ProblemFile};
 use crate::registry::Registry;
 use crate::robot::{RobotFacts, TaskRobot};
 use crate::verify::{Proof, Refusal, VerifyOptions, verify_unless};
@@ -77,7 +78,7 @@ pub fn replan<M: TaskRobot>(
         request.plan.seed,
         PlannerFacts::default(),
     )?;
-    let old = Old { file: adapted(&request.from, &blank), facts: &facts, cancel };
+    let old = Old { file: adapted(&request.from, &blank), geometry: problem.geometry()?, facts: &facts, cancel };
     let of = old.file.steps.len();
     let judged = old.judge();
     let (good, refused) = match &judged {
@@ -128,9 +129,21 @@ pub fn replan<M: TaskRobot>(
     last.ok_or(PlanningError::NoLimit)
 }
 
+/// Where an object stands.
+struct Standing {
+    /// The surface.
+    on: String,
+    /// Its centre, world x, y, metres.
+    at: [f64; 2],
+    /// Radians.
+    yaw: f64,
+}
+
 /// The old plan for the new problem.
 struct Old<'a> {
     file: PlanFile,
+    /// Of the problem.
+    geometry: Geometry,
     facts: &'a RobotFacts,
     cancel: &'a Cancel,
 }
@@ -242,24 +255,32 @@ impl Old<'_> {
     fn rest(&self, kept: usize) -> Option<ProblemFile> {
         let end = self.end(kept);
         let mut problem = self.file.problem.clone();
-        let geometry = problem.geometry().ok()?;
         problem.robot.base = end.base;
         problem.robot.posture = None;
-        let joints = self.facts.arm_joints.iter().map(|name| end.joints.get(name.as_str()).copied());
-        problem.robot.joints = Some(joints.collect::<Option<_>>()?);
-        for (object, solid) in problem.objects.iter_mut().zip(&geometry.objects) {
-            let pose = Isometry3::from(*end.objects.get(object.name.as_str())?);
-            if self.file.start.objects.get(object.name.as_str()) == end.objects.get(object.name.as_str()) {
-                continue;
+        problem.robot.joints = Some(self.arm(end)?);
+        for (object, solid) in problem.objects.iter_mut().zip(&self.geometry.objects) {
+            let pose = end.objects.get(object.name.as_str())?;
+            if self.file.start.objects.get(object.name.as_str()) != Some(pose) {
+                let standing = self.standing((object, solid), pose)?;
+                (object.on, object.at, object.yaw) = (standing.on, standing.at, standing.yaw);
             }
-            let (at, bottom) = (pose.translation.vector, pose.translation.z - solid.depth_below_origin);
-            let under = (&Point2::new(at.x, at.y), bottom);
-            object.on = self.file.problem.surface_under(object, &geometry.scene, under, ON_TOP_M)?;
-            object.at = [at.x, at.y];
-            object.yaw = pose.rotation.euler_angles().2;
         }
         problem.validate(&problem.name).ok()?;
         Some(problem)
+    }
+
+    /// The joints of the arm.
+    fn arm(&self, waypoint: &Waypoint) -> Option<Vec<f64>> {
+        self.facts.arm_joints.iter().map(|name| waypoint.joints.get(name.as_str()).copied()).collect()
+    }
+
+    /// Where an object at this pose stands, in the words of a problem.
+    fn standing(&self, (object, solid): (&Object, &StartingObject), pose: &Pose) -> Option<Standing> {
+        let pose = Isometry3::from(*pose);
+        let [x, y, z] = pose.translation.vector.into();
+        let under = (&Point2::new(x, y), z - solid.depth_below_origin);
+        let on = self.file.problem.surface_under(object, &self.geometry.scene, under, ON_TOP_M)?;
+        Some(Standing { on, at: [x, y], yaw: pose.rotation.euler_angles().2 })
     }
 
     /// Where the old plan leaves the objects that it has moved by then, whenever its hand is free behind so many steps.
@@ -321,9 +342,13 @@ fn differ_in_hand_alone(a: &Waypoint, b: &Waypoint, facts: &RobotFacts) -> bool 
     a.base == b.base && a.objects == b.objects && arm(a) == arm(b) && a.joints != b.joints
 }
 
-/// Is all of two waypoints the same but for rounding?
+/// Are two numbers the same but for rounding?
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= ROUNDING
+}
+
+/// Does the robot stand alike in two waypoints, but for rounding?
 fn is_near(a: &Waypoint, b: &Waypoint) -> bool {
-    let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING;
     let joints = a.joints.iter().all(|(name, value)| b.joints.get(name).is_some_and(|other| near(*value, *other)));
     joints && a.base.iter().zip(&b.base).all(|(a, b)| near(*a, *b))
 }

@@ -13,6 +13,7 @@ use super::figure::{Detail, Figure, draw_goals, draw_objects};
 use super::ink::{self, Anchor, Ink};
 use super::model::Pose;
 use super::overview::{Sheet, start_ink};
+use super::page::document;
 use super::palette;
 use super::panel::Panel;
 use super::room::Room;
@@ -57,7 +58,7 @@ pub fn animate(plan: &PlanFile, robot: &RobotFacts) -> Result<String, PictureErr
     let period_s = frames.iter().map(|frame| frame.shown_s).sum::<f64>();
     let mut style = Element::new("style");
     style.append(Text::new(rules(&frames, period_s)));
-    let mut page = document(size);
+    let mut page = document(size.0, size.1);
     page.append(style);
     for (corner, view) in corners.iter().zip(&views) {
         let mut content = Element::new("g");
@@ -152,15 +153,4 @@ impl Frame {
         group.append(bar(self.share, &Ink::filled(colour)));
         group
     }
-}
-
-fn document((width, height): (f64, f64)) -> Element {
-    let mut svg = Element::new("svg");
-    svg.assign("xmlns", "http://www.w3.org/2000/svg");
-    svg.assign("viewBox", format!("0 0 {} {}", ink::rounded(width), ink::rounded(height)));
-    svg.assign("width", ink::rounded(width));
-    svg.assign("height", ink::rounded(height));
-    svg.assign("font-family", "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif");
-    svg.append(ink::rectangle(&Point2::origin(), width, height, 0.0, &Ink::filled(palette::PAGE)));
-    svg
 }

@@ -42,19 +42,20 @@ pub(super) fn draw(story: &Story, extent: Extent) -> Element {
         y += 16.0;
         y += filmstrip::draw(story, &room, SIDE, y, WIDTH - 2.0 * SIDE, &mut page);
     }
-    document(page, y + 4.0)
+    let mut svg = document(WIDTH, y + 4.0);
+    svg.append(page);
+    svg
 }
 
-/// The root element around the page.
-fn document(page: Element, height: f64) -> Element {
+/// The root element of a picture of this size, with its ground.
+pub(super) fn document(width: f64, height: f64) -> Element {
     let mut svg = Element::new("svg");
     svg.assign("xmlns", "http://www.w3.org/2000/svg");
-    svg.assign("viewBox", format!("0 0 {WIDTH} {}", ink::rounded(height)));
-    svg.assign("width", WIDTH);
+    svg.assign("viewBox", format!("0 0 {} {}", ink::rounded(width), ink::rounded(height)));
+    svg.assign("width", ink::rounded(width));
     svg.assign("height", ink::rounded(height));
     svg.assign("font-family", "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif");
-    svg.append(ink::rectangle(&Point2::origin(), WIDTH, height, 0.0, &Ink::filled(palette::PAGE)));
-    svg.append(page);
+    svg.append(ink::rectangle(&Point2::origin(), width, height, 0.0, &Ink::filled(palette::PAGE)));
     svg
 }
 

@@ -3,9 +3,9 @@
 //! Behind the gap everything must stand as the old plan had it there, the robot too, so that its last steps can follow as they are.
 
 use darrt_core::observe::Observer;
-use nalgebra::{Isometry3, Point2};
+use nalgebra::Isometry3;
 
-use super::{ON_TOP_M, Old, ROUNDING, ReplanRequest};
+use super::{Old, ReplanRequest, Standing, is_near, near};
 use crate::plan_file::{PlanFile, Pose, Step, Waypoint};
 use crate::planning::{PlanRequest, PlanResult, plan_without_clock};
 use crate::planning_error::PlanningError;
@@ -81,34 +81,30 @@ impl Old<'_> {
     /// From behind the first `kept` steps to where the old plan is taken up again.
     fn gap(&self, kept: usize, join: usize) -> Option<ProblemFile> {
         let mut problem = if kept == 0 { self.file.problem.clone() } else { self.rest(kept)? };
-        let geometry = self.file.problem.geometry().ok()?;
         let (here, there) = (self.end(kept), self.end(join));
         let mut objects = Vec::new();
-        for (object, solid) in self.file.problem.objects.iter().zip(&geometry.objects) {
+        for (object, solid) in self.file.problem.objects.iter().zip(&self.geometry.objects) {
             let name = object.name.as_str();
             let pose = there.objects.get(name)?;
             if here.objects.get(name) == Some(pose) {
                 continue;
             }
-            let pose = Isometry3::from(*pose);
-            let [x, y, z] = pose.translation.vector.into();
-            let under = (&Point2::new(x, y), z - solid.depth_below_origin);
+            let Standing { on, at, yaw } = self.standing((object, solid), pose)?;
             objects.push(ObjectGoal {
                 object: object.name.clone(),
-                on: Some(self.file.problem.surface_under(object, &geometry.scene, under, ON_TOP_M)?),
-                at: Some([x, y]),
+                on: Some(on),
+                at: Some(at),
                 region: None,
                 position: None,
                 tolerance_m: EXACTLY,
-                yaw: Some(pose.rotation.euler_angles().2),
+                yaw: Some(yaw),
                 yaw_tolerance: EXACTLY,
                 state: Some(GoalState::Released),
             });
         }
-        let joints = self.facts.arm_joints.iter().map(|name| there.joints.get(name.as_str()).copied());
         let robot = RobotGoal {
             base: Some(there.base),
-            joints: Some(joints.collect::<Option<_>>()?),
+            joints: Some(self.arm(there)?),
             tool: None,
             tolerance_m: EXACTLY,
             tolerance_rad: EXACTLY,
@@ -132,10 +128,8 @@ impl Old<'_> {
             let [now, then] = [&end, there].map(|waypoint| waypoint.objects.get(name).copied());
             let (now, then) = (now?, then?);
             // A round object may be turned otherwise; all that follows goes on from there.
-            let turn = Isometry3::from(then).rotation.rotation_to(&Isometry3::from(now).rotation);
-            let own = Isometry3::from(then).rotation;
-            let turned = own.inverse() * turn * own;
-            let turned = |pose: Pose| Pose::from(Isometry3::from(pose) * turned);
+            let turn = Isometry3::from(then).rotation.inverse() * Isometry3::from(now).rotation;
+            let turned = |pose: Pose| Pose::from(Isometry3::from(pose) * turn);
             for step in &mut tail {
                 for pose in step.waypoints.iter_mut().filter_map(|waypoint| waypoint.objects.get_mut(name)) {
                     // What has not moved yet stands where the new piece has left it, to the last bit.
@@ -162,13 +156,11 @@ impl Old<'_> {
 
 /// Do robot and objects stand alike but for rounding? How a round object is turned is nothing that anybody could see.
 fn is_there(a: &Waypoint, b: &Waypoint, objects: &[(&str, bool)]) -> bool {
-    let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING;
-    let joints = a.joints.iter().all(|(name, value)| b.joints.get(name).is_some_and(|other| near(*value, *other)));
     let mut objects = objects.iter().map(|(name, is_round)| {
         let [Some(a), Some(b)] = [a, b].map(|waypoint| waypoint.objects.get(*name)) else { return false };
         let places = a.position.iter().zip(&b.position).all(|(a, b)| near(*a, *b));
         let [a, b] = [a, b].map(|pose| Isometry3::from(*pose).rotation);
         places && (*is_round || a.angle_to(&b) <= EXACTLY)
     });
-    joints && a.base.iter().zip(&b.base).all(|(a, b)| near(*a, *b)) && objects.all(|is_near| is_near)
+    is_near(a, b) && objects.all(|is_near| is_near)
 }

@@ -92,6 +92,11 @@ pub(super) fn variable_of(tree: &KinematicTree, link: usize) -> Option<usize> {
     }
 }
 
+/// Is there no joint that moves between a link and the root?
+pub(super) fn is_rigid(tree: &KinematicTree, link: usize) -> bool {
+    joints_above(tree, link) == 0
+}
+
 pub(super) fn joints_above(tree: &KinematicTree, mut link: usize) -> usize {
     let mut count = 0;
     loop {

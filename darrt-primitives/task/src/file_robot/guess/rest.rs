@@ -9,7 +9,7 @@ use rand::RngExt as _;
 
 use super::super::semantic::{Disabled, Semantic};
 use super::super::travel::corners;
-use super::hand::variable_of;
+use super::hand::{is_rigid, variable_of};
 use super::posture::Footprint;
 
 /// So many turning joints in a row are another arm or a leg; of more only the first are tucked, for the last are fingers.
@@ -143,10 +143,7 @@ fn footprint(tree: &KinematicTree, bodies: &[Option<Body>], values: &[f64]) -> F
             .collect()
     };
     let floor_m = points(&|_| true).iter().map(|at| at.z).fold(0.0, f64::min);
-    let is_rigid = |link: usize| {
-        std::iter::successors(Some(link), |at| tree.parent(*at)).all(|at| variable_of(tree, at).is_none())
-    };
-    Footprint::of(points(&is_rigid).into_iter(), floor_m)
+    Footprint::of(points(&|link| is_rigid(tree, link)).into_iter(), floor_m)
 }
 
 impl Row<'_> {

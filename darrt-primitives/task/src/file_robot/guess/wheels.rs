@@ -5,7 +5,7 @@ use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
 use nalgebra::Isometry3;
 
 use super::super::load;
-use super::hand::variable_of;
+use super::hand::is_rigid;
 
 /// How far above the robot's lowest point the lowest point of a wheel that it stands on is at most, metres: springs and casters
 /// differ by so much.
@@ -26,12 +26,8 @@ pub(super) fn base_kind(tree: &KinematicTree, bodies: &[Option<Body>], mine: &[S
     let axle = |link: usize| {
         let Some(LinkMotion::Turning { axis, drive }) = tree.motion(link) else { return None };
         let variable = tree.variables().get(drive.variable)?;
-        let mut above = tree.parent(link);
-        while let Some(at) = above {
-            if variable_of(tree, at).is_some() {
-                return None;
-            }
-            above = tree.parent(at);
+        if tree.parent(link).is_some_and(|parent| !is_rigid(tree, parent)) {
+            return None;
         }
         let pose = poses.get(link)?;
         let axis = pose.rotation * axis.into_inner();
