@@ -49,6 +49,35 @@ pub fn config(cases: u32, regressions: Option<&'static str>) -> ProptestConfig {
     }
 }
 
+/// Repeats `round`, which runs a property and says how often there was something to look at, until `enough` were seen, at
+/// most 16 times; says how many there were.
+///
+/// Primitives succeed from few of the states that a strategy draws. One round may see fewer than a test asks for by chance
+/// alone; sixteen do so only where the property shows nothing.
+///
+/// ```
+/// use std::cell::Cell;
+/// use darrt_core::testing::strategies::{config, seeds, seen};
+/// use proptest::proptest;
+///
+/// let seldom = seen(3, || {
+///     let found = Cell::new(0);
+///     proptest!(config(16, None), |(seed in seeds())| found.set(found.get() + u32::from(seed % 8 == 0)));
+///     found.get()
+/// });
+/// assert!(seldom >= 3);
+/// ```
+pub fn seen(enough: u32, mut round: impl FnMut() -> u32) -> u32 {
+    let mut seen = 0;
+    for _ in 0..16 {
+        seen += round();
+        if seen >= enough {
+            break;
+        }
+    }
+    seen
+}
+
 /// Seeds; they shrink to 0.
 pub fn seeds() -> impl Strategy<Value = u64> {
     prop_oneof![3 => 0_u64..1000, 1 => any::<u64>()]

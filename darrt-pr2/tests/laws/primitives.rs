@@ -7,7 +7,7 @@ use darrt_core::laws::{MotionClaims, PrimitiveClaims, Tried, check_primitive, tr
 use darrt_core::partial::PartialState;
 use darrt_core::primitive::Primitive;
 use darrt_core::state::ObjectId;
-use darrt_core::testing::strategies::{config, looks, tasks_from};
+use darrt_core::testing::strategies::{config, looks, seen, tasks_from};
 use darrt_pr2::primitives::ArmRigidTransfer;
 use darrt_pr2::primitives::ArmTransit;
 use darrt_pr2::primitives::BaseRigidTransfer;
@@ -42,28 +42,31 @@ const CLAIMS: TabletopClaims = TabletopClaims { knot: 1e-6, bow: 0.05, touch_m: 
 
 /// All laws of one primitive from all kinds of states; it must succeed now and then, or nothing is shown.
 fn check(primitive: &dyn Primitive<World>, starts: Starts, cases: u32, excuse: Option<Excuse<'_, World>>) {
-    let succeeded = Cell::new(0);
-    for name in PROBLEMS {
-        let problem = problem(name);
-        let m = problem.domain();
-        let all = (0..5_u8, resting(m), holding(m), engaged(m), any_mode(m));
-        let starts = all.prop_map(move |(kind, resting, holding, engaged, any)| match (kind, starts) {
-            (4, _) => any,
-            (_, Starts::Resting) => resting,
-            (_, Starts::Holding) => holding,
-            (_, Starts::Engaged) => engaged,
-        });
-        proptest!(config(cases, REGRESSIONS), |((from, to, seed) in tasks_from(m, starts), ts in looks())| {
-            let motion = MotionClaims { travel: &body_travel, looks: 16, ..MotionClaims::default() };
-            let claims = PrimitiveClaims { ts: &ts, motion, max_instances: 8, excuse, ..PrimitiveClaims::default() };
-            if let Tried::Propagated(instances) = try_primitive(m, primitive, &from, &to, seed, &claims)? {
-                succeeded.set(succeeded.get() + 1);
-                check_tabletop(m, &instances, &from, &ts, &CLAIMS)?;
-                check_finger_contacts(m, problem.validity(), &instances, &from, &ts)?;
-            }
-        });
-    }
-    assert!(succeeded.get() >= 3, "{} succeeded {} times only", primitive.name(), succeeded.get());
+    let succeeded = seen(3, || {
+        let count = Cell::new(0);
+        for name in PROBLEMS {
+            let problem = problem(name);
+            let m = problem.domain();
+            let all = (0..5_u8, resting(m), holding(m), engaged(m), any_mode(m));
+            let starts = all.prop_map(move |(kind, resting, holding, engaged, any)| match (kind, starts) {
+                (4, _) => any,
+                (_, Starts::Resting) => resting,
+                (_, Starts::Holding) => holding,
+                (_, Starts::Engaged) => engaged,
+            });
+            proptest!(config(cases, REGRESSIONS), |((from, to, seed) in tasks_from(m, starts), ts in looks())| {
+                let motion = MotionClaims { travel: &body_travel, looks: 16, ..MotionClaims::default() };
+                let claims = PrimitiveClaims { ts: &ts, motion, max_instances: 8, excuse, ..PrimitiveClaims::default() };
+                if let Tried::Propagated(instances) = try_primitive(m, primitive, &from, &to, seed, &claims)? {
+                    count.set(count.get() + 1);
+                    check_tabletop(m, &instances, &from, &ts, &CLAIMS)?;
+                    check_finger_contacts(m, problem.validity(), &instances, &from, &ts)?;
+                }
+            });
+        }
+        count.get()
+    });
+    assert!(succeeded >= 3, "{} succeeded {succeeded} times only", primitive.name());
 }
 
 #[test]
@@ -94,29 +97,32 @@ fn base_rigid_transfer() {
 /// Targets that the base alone can reach: what is held upright, moved in the plane and turned about the vertical.
 #[test]
 fn base_rigid_transfer_in_the_plane() {
-    let succeeded = Cell::new(0);
-    for name in PROBLEMS {
-        let problem = problem(name);
-        let m = problem.domain();
-        // Round objects may be turned at will, and the base with them: in the middle of the room it stays in the room.
-        let places = (-1.0..1.0, -1.0..1.0, -3.0..3.0_f64);
-        proptest!(config(32, REGRESSIONS), |(from in grasping(m), (x, y, yaw) in places, seed in 0..1000_u64, ts in looks())| {
-            let id = from.mode.held().unwrap().object;
-            let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
-            let pose = from.objects[id.index()];
-            let target = Isometry3::from_parts(Translation3::new(x, y, pose.translation.z), turn * pose.rotation);
-            let to = PartialState::anywhere(m).with_object(id, target);
-            let motion = MotionClaims { travel: &body_travel, looks: 16, ..MotionClaims::default() };
-            let claims = PrimitiveClaims { ts: &ts, motion, max_instances: 1, ..PrimitiveClaims::default() };
-            if let Tried::Propagated(instances) = try_primitive(m, &BaseRigidTransfer, &from, &to, seed, &claims)? {
-                succeeded.set(succeeded.get() + 1);
-                check_tabletop(m, &instances, &from, &ts, &CLAIMS)?;
-                let end = instances[0].at(m, 1.0, &from);
-                prop_assert!(to.is_object_met(m, &end, id), "{:?} instead of {target:?}", end.objects);
-            }
-        });
-    }
-    assert!(succeeded.get() >= 3, "{}", succeeded.get());
+    let succeeded = seen(3, || {
+        let count = Cell::new(0);
+        for name in PROBLEMS {
+            let problem = problem(name);
+            let m = problem.domain();
+            // Round objects may be turned at will, and the base with them: in the middle of the room it stays in the room.
+            let places = (-1.0..1.0, -1.0..1.0, -3.0..3.0_f64);
+            proptest!(config(32, REGRESSIONS), |(from in grasping(m), (x, y, yaw) in places, seed in 0..1000_u64, ts in looks())| {
+                let id = from.mode.held().unwrap().object;
+                let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
+                let pose = from.objects[id.index()];
+                let target = Isometry3::from_parts(Translation3::new(x, y, pose.translation.z), turn * pose.rotation);
+                let to = PartialState::anywhere(m).with_object(id, target);
+                let motion = MotionClaims { travel: &body_travel, looks: 16, ..MotionClaims::default() };
+                let claims = PrimitiveClaims { ts: &ts, motion, max_instances: 1, ..PrimitiveClaims::default() };
+                if let Tried::Propagated(instances) = try_primitive(m, &BaseRigidTransfer, &from, &to, seed, &claims)? {
+                    count.set(count.get() + 1);
+                    check_tabletop(m, &instances, &from, &ts, &CLAIMS)?;
+                    let end = instances[0].at(m, 1.0, &from);
+                    prop_assert!(to.is_object_met(m, &end, id), "{:?} instead of {target:?}", end.objects);
+                }
+            });
+        }
+        count.get()
+    });
+    assert!(succeeded >= 3, "{succeeded}");
 }
 
 /// What is grasped is lifted, which may well be away from its target.
