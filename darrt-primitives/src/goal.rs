@@ -196,6 +196,11 @@ impl<J> TabletopGoal<J> {
         Self { robot, ..self }
     }
 
+    /// Where the robot must be, if that is asked for.
+    pub fn robot(&self) -> Option<&RobotGoal<J>> {
+        self.robot.as_ref()
+    }
+
     /// Of every group one must be met.
     pub fn groups(&self) -> &[Vec<ObjectGoal>] {
         &self.groups

@@ -26,7 +26,7 @@ const MOST_THREADS: u64 = 256;
 /// DARRT searches a tree of states whose edges are whole actions (primitives): driving, moving the arm, pushing,
 /// picking, carrying, placing. The plan is checked by a separate verifier, printed as a table, saved as JSON, and drawn.
 #[derive(Debug, Parser)]
-#[command(name = "darrt", version, after_help = EXAMPLES, propagate_version = true)]
+#[command(name = "darrt", version, after_help = EXAMPLES, propagate_version = true, max_term_width = 80)]
 pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
@@ -97,21 +97,21 @@ Examples:
   darrt plan plate3 --improve steps --time-limit 30 the plan with the fewest steps that is found in 30 s
   darrt plan mine.toml --stats                      see where the attempts end
 
-The same problem, seed and options give the same plan file byte for byte, with any number
+The same problem, seed and options give the same plan file byte for byte, with any number \
 of threads, as long as the time limit is not what ends the search or the improvement.
 
-Every attempt ends at a restart; --improve and --search portfolio need them, and begin a new
-attempt after 2000 iterations if neither the problem nor --restart says when. The share of an
-attempt in --iterations is all that it may use until its restart, also when it needs less.
-After Ctrl-C, --improve gives the best plan so far: the first line says that it was interrupted,
+Every attempt ends at a restart; --improve and --search portfolio need them, and begin a new \
+attempt after 2000 iterations if neither the problem nor --restart says when. The share of an \
+attempt in --iterations is all that it may use until its restart, also when it needs less. \
+After Ctrl-C, --improve gives the best plan so far: the first line says that it was interrupted, \
 and the exit code is 0, because there is a plan.
 
---search portfolio: the first attempt is darrt, then connect, hierarchical, hierarchical-connect
-and so on, so a short --restart brings the others in.
-Every plan that is found is improved in the seconds that it takes to carry out, with a number of
-attempts that its steps decide, before it is verified; --no-improve leaves that out, and so does
---improve clearance. --improve COST chooses among several plans.
-Travel is a bound on the ways of all points of the robot and of what it
+--search portfolio: the first attempt is darrt, then connect, hierarchical, hierarchical-connect \
+and so on, so a short --restart brings the others in. \
+Every plan that is found is improved in the seconds that it takes to carry out, with a number of \
+attempts that its steps decide, before it is verified; --no-improve leaves that out, and so does \
+--improve clearance. --improve COST chooses among several plans. \
+Travel is a bound on the ways of all points of the robot and of what it \
 moves: with less of it the base alone may go farther.";
 
 /// Options of `darrt plan`.
@@ -160,7 +160,8 @@ pub struct PlanOptions {
     /// Attempts that run at the same time, 1 to 256; helps only with restarts
     #[arg(long, default_value_t = 1, value_name = "NUMBER", value_parser = threads, allow_hyphen_values = true)]
     pub threads: usize,
-    /// Write the plan here [default: PROBLEM.plan.json in the current folder, without the problem's own ending]
+    /// Write the plan here, `-` for the standard output and nothing else there [default: PROBLEM.plan.json in the current
+    /// folder, without the problem's own ending]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Write the picture here: .html (3-D, moving), .svg, .png or .glb [default: beside the plan, .html]. Where there is no
@@ -197,9 +198,9 @@ pub struct PlanOptions {
 }
 
 const EXPLAIN_NOTES: &str = "\
-Plans the problem as it is, and then with changes: without an obstacle, with a smaller one, with wider limits, with
-another primitive, without a part of the goal, with more iterations; then without several obstacles, and with two
-changes. Every plan that is told was verified. All cores are used, and no clock: the same problem and seed have the
+Plans the problem as it is, and then with changes: without an obstacle, with a smaller one, with wider limits, with \
+another primitive, without a part of the goal, with more iterations; then without several obstacles, and with two \
+changes. Every plan that is told was verified. All cores are used, and no clock: the same problem and seed have the \
 same answer. Exit code 1: none of the changed problems has a plan.";
 
 /// Options of `darrt explain`.
@@ -255,8 +256,8 @@ Examples:
                                                     what to expect, without physics
   darrt execute --print-noise > mine.toml           the errors of a real robot, to copy and edit
 
-Without --replan the plan is executed as it is, open loop. A run succeeds if every object ends at its goal, within the
-tolerance of the problem, and nothing else was moved. The first departure from the plan is told as the
+Without --replan the plan is executed as it is, open loop. A run succeeds if every object ends at its goal, within the \
+tolerance of the problem, and nothing else was moved. The first departure from the plan is told as the \
 cause of a failure. The same plan, noise and seed give the same runs with any number of threads.";
 
 /// Options of `darrt execute`.
@@ -372,7 +373,7 @@ Examples:
   darrt bench --variants all --seeds 20 --shard 2/2 --out two.jsonl     on another
   darrt bench --merge one.jsonl two.jsonl --report page.html --ompl logs
 
-The same command after an interruption goes on where it stopped. Runs without a plan count in
+The same command after an interruption goes on where it stopped. Runs without a plan count in \
 every quantile, as longer than the time they had.";
 
 /// Options of `darrt bench`.

@@ -114,9 +114,15 @@ pub(crate) fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> 
     let progress = diagnosis.nearest_to_goal_m.map_or_else(String::new, |metres| {
         format!(" (nearest so far: {metres:.2} m to move, in {})", counted(result.nodes as u64, "state"))
     });
+    let by_itself = if is_doubted { "" } else { ": each object can be taken and brought to its goal by itself" };
     let remedies: Vec<_> = diagnosis.remedies.iter().map(text::of_relaxation).collect();
     let is_steered = diagnosis.causes.iter().any(|cause| matches!(cause, Cause::Steered { .. }));
-    let nothing = if is_steered { "beside the rules of `steer` nothing" } else { "nothing" };
+    let is_doubted = diagnosis.causes.iter().any(|cause| matches!(cause, Cause::Doubted { .. }));
+    let nothing = match (is_steered, is_doubted) {
+        (true, _) => "beside the rules of `steer` nothing",
+        (false, true) => "beside what is doubted nothing",
+        (false, false) => "nothing",
+    };
     let or_allow = if is_steered { ", or to allow more in `steer`," } else { "" };
     let would_help = format!("it would help, as far as a few tries tell: {}", remedies.join("; or "));
     let mut lines: Vec<_> = (!remedies.is_empty()).then_some(would_help).into_iter().collect();
@@ -129,8 +135,7 @@ pub(crate) fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> 
             counted(result.iterations, "iteration")
         ),
         Outcome::MayBeFound => format!(
-            "{nothing} was found that keeps a plan away: each object can be taken and brought to its goal by itself{progress}. \
-             Another --seed, {limit} or a --restart{or_allow} may help"
+            "{nothing} was found that keeps a plan away{by_itself}{progress}. Another --seed, {limit} or a --restart{or_allow} may help"
         ),
     });
     lines

@@ -4,6 +4,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use super::exit::{Exit, Failure};
+use super::table::WIDTH;
 use darrt_task::text::printable;
 use darrt_task::text_file;
 
@@ -22,6 +23,14 @@ impl Output {
     /// Any other place.
     pub(crate) fn new(to: Box<dyn Write>) -> Self {
         Self { to, is_closed: false }
+    }
+
+    /// Prints sentences: lines that are too long for a terminal go on in the next one, below the text of their first.
+    ///
+    /// # Errors
+    /// As [`Output::print`].
+    pub(crate) fn tell(&mut self, text: &str) -> Result<(), Failure> {
+        self.print(&folded(text))
     }
 
     /// Prints one text, ended by a line feed if it has none; what a terminal would act on is escaped.
@@ -46,6 +55,48 @@ impl Output {
     }
 }
 
+/// `text` in lines of the width of a terminal. A line that goes on is indented as far as what stands behind its label
+/// (`notice:   ...`), else by two more than it was. What stands between backticks is to be copied, and stays whole, as names do
+/// that are wider by themselves.
+pub(crate) fn folded(text: &str) -> String {
+    let width = usize::from(WIDTH);
+    let fold = |line: &str| {
+        if line.chars().count() <= width {
+            return line.to_owned();
+        }
+        let indent = " ".repeat(hang(line));
+        // Spaces in what is to be copied are no place to break at.
+        let whole: String = line
+            .split('`')
+            .enumerate()
+            .map(|(part, text)| if part % 2 == 1 { text.replace(' ', &GLUE.to_string()) } else { text.to_owned() })
+            .collect::<Vec<_>>()
+            .join("`");
+        let options = textwrap::Options::new(width)
+            .subsequent_indent(&indent)
+            .break_words(false)
+            .word_splitter(textwrap::WordSplitter::NoHyphenation)
+            .word_separator(textwrap::WordSeparator::AsciiSpace)
+            .wrap_algorithm(textwrap::WrapAlgorithm::FirstFit);
+        textwrap::fill(&whole, options).replace(GLUE, " ")
+    };
+    text.split('\n').map(fold).collect::<Vec<_>>().join("\n")
+}
+
+/// Stands for a space that must stay one; texts of ours do not have it.
+const GLUE: char = '\u{2060}';
+
+/// How far a line is indented where it goes on.
+fn hang(line: &str) -> usize {
+    let spaces = line.chars().take_while(|c| *c == ' ').count();
+    // A label is one short word, and its text stands in the column of all such texts.
+    let Some((label, text)) = line.split_once(": ") else { return spaces + 2 };
+    if label.len() > 9 || label.trim_start().contains(' ') {
+        return spaces + 2;
+    }
+    label.chars().count() + 2 + text.chars().take_while(|c| *c == ' ').count()
+}
+
 /// A result for programs; `what` names it where it cannot be written.
 ///
 /// # Errors
@@ -55,6 +106,11 @@ pub(crate) fn json(value: &impl serde::Serialize, what: &str) -> Result<String, 
     text.map_err(|error| Failure::new(Exit::CannotWrite, format!("{what} cannot be written as JSON: {error}")))
 }
 
+/// Is this the standard output, and no file? Only plans go there.
+pub(crate) fn is_stdout(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
 /// Says before any work whether a file can be put at `path`, and where it will really be: links are followed.
 ///
 /// # Errors
@@ -62,6 +118,10 @@ pub(crate) fn json(value: &impl serde::Serialize, what: &str) -> Result<String, 
 /// not a regular file is there.
 pub(crate) fn writable(path: &Path) -> Result<PathBuf, Failure> {
     let refuse = |reason: String| Failure::new(Exit::CannotWrite, format!("{}: {reason}", path.display()));
+    if is_stdout(path) {
+        let why = "is the standard output, where only the plan of `darrt plan` can go; a file of this name is `./-`";
+        return Err(refuse(why.to_owned()));
+    }
     let place = match std::fs::metadata(path) {
         Ok(there) if !there.is_file() => return Err(refuse("is there already and is not a regular file".to_owned())),
         Ok(_) => path.canonicalize().map_err(|error| refuse(format!("cannot be written: {error}")))?,
@@ -73,6 +133,18 @@ pub(crate) fn writable(path: &Path) -> Result<PathBuf, Failure> {
     // The new file is made and dropped again.
     text_file::beside(&place).map_err(|error| refuse(format!("cannot be written: {error}")))?;
     Ok(place)
+}
+
+/// [`writable`] for a page, whose name says that it is one.
+///
+/// # Errors
+/// [`Exit::BadInput`] for another ending than `.html` or `.htm`, else as [`writable`].
+pub(crate) fn writable_page(path: &Path) -> Result<PathBuf, Failure> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    match ending.as_deref() {
+        Some("html" | "htm") => writable(path),
+        _ => Err(Failure::input(format!("{}: a page ends in .html", path.display()))),
+    }
 }
 
 /// Do both name the same file, whether it is there already or not?
@@ -128,6 +200,20 @@ pub(crate) fn file_stem(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sentences_are_folded_below_their_text_and_what_is_copied_stays_whole() {
+        let words = "word ".repeat(18);
+        assert_eq!(folded(words.trim_end()), format!("{}\n  word word", "word ".repeat(16).trim_end()));
+        let notice = folded(&format!("notice:   {}", words.trim_end()));
+        assert_eq!(notice.lines().nth(1), Some("          word word word word"));
+        let copied = format!("{}`darrt plan plate3 --seed 7 --time-limit 60`", "word ".repeat(10));
+        assert!(folded(&copied).ends_with("\n  `darrt plan plate3 --seed 7 --time-limit 60`"));
+        let name = "x".repeat(100);
+        assert_eq!(folded(&name), name);
+        assert_eq!(folded("short\n  lines\n"), "short\n  lines\n");
+        assert!(folded(&format!("aaaa: ä{}", "ö ".repeat(60))).lines().all(|line| line.chars().count() <= 80));
+    }
 
     /// Fails with one kind of error.
     struct Broken(ErrorKind);

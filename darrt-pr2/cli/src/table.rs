@@ -2,7 +2,7 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, Table};
 
-/// Columns of a terminal; only a table of what must not be broken is wider.
+/// Columns of a terminal; only what must not be broken is wider.
 pub(crate) const WIDTH: u16 = 80;
 
 /// Lines above, below the header and below the table, in comfy-table's order of components.

@@ -122,6 +122,9 @@ impl Diagnosis {
                 let occupant = Occupant::Enclosure;
                 Cause::GoalOccupied { object: object.clone(), by: by.clone(), occupant, at: *at }
             }
+            PlanningError::BaseGoalBlocked { by, .. } => {
+                Cause::NoRobotGoal { tried: 1, blockers: ranked(BTreeMap::from([(by.clone(), 1)])) }
+            }
             PlanningError::Doubtful { error, .. } => return Self::of_error(problem, error),
             PlanningError::InfeasibleGoal { object, why } => {
                 Cause::InfeasibleGoal { object: object.clone(), lack: why.clone() }
@@ -166,6 +169,11 @@ pub fn diagnose<M: TaskRobot>(
         causes.push(Cause::Steered { steps });
     }
     let is_hopeless = causes.iter().any(Cause::is_decisive);
+    if !is_hopeless {
+        // What a plan would refute, and no plan has.
+        let open = result.doubts.iter().filter(|doubt| doubt.refuted.is_some());
+        causes.extend(open.map(|doubt| Cause::Doubted { what: doubt.words.clone() }));
+    }
     let outcome = match () {
         () if is_hopeless => Outcome::Hopeless,
         () if result.iterations < FEW => Outcome::TooShort,

@@ -4,6 +4,7 @@
 //! An error is proven: at every place that the goals allow something is in the way, or a closed mesh lies between the start and
 //! the goal. What was only found at all places tried is a doubt.
 
+mod base;
 mod shrunk;
 
 use darrt_core::goal::Goal;
@@ -41,8 +42,8 @@ const ROUNDING: f64 = 1e-9;
 /// places tried, is returned in words.
 ///
 /// # Errors
-/// [`PlanningError::GoalBlocked`] with the object and what is in the way, [`PlanningError::GoalEnclosed`];
-/// [`PlanningError::Geometry`] when that cannot be said.
+/// [`PlanningError::GoalBlocked`] with the object and what is in the way, [`PlanningError::GoalEnclosed`],
+/// [`PlanningError::BaseGoalBlocked`]; [`PlanningError::Geometry`] when that cannot be said.
 pub fn check_goal<M: Manipulator>(
     m: &Tabletop<M>,
     goal: &TabletopGoal<M::Joints>,
@@ -52,6 +53,7 @@ pub fn check_goal<M: Manipulator>(
 ) -> Result<Option<String>, PlanningError> {
     let room = Room { m, goal, scene, start, immovable };
     room.check_enclosed()?;
+    base::check(m, goal, scene, start)?;
     let mut blocked = None;
     for i in 0..SAMPLES {
         let Some(target) = goal.sample(m, &mut stream(0, 0, i, Purpose::Attempt)) else {
@@ -315,6 +317,16 @@ mod tests {
         assert_eq!(message, "the goal of `plate` is blocked: at (0.070, 0.050, 0.760) it touches `big bowl`");
         let message = checked("position = [0.0, 0.0, 0.73]\ntolerance_m = 0.005", "").unwrap_err().to_string();
         assert!(message.contains("it touches `central table top`"), "{message}");
+    }
+
+    #[test]
+    fn a_base_in_a_table_is_blocked_and_one_beside_it_is_not() {
+        let goal = "on = \"central table\"\nat = [-0.2, 0.05]";
+        let at = |x: f64| checked(goal, &format!("[goal.robot]\nbase = [{x}, 0.0, 0.0]\n"));
+        let message = at(0.0).unwrap_err().to_string();
+        assert!(message.contains("`goal.robot.base` is blocked") && message.contains("central table"), "{message}");
+        assert!(at(0.0).unwrap_err().is_impossible());
+        assert_eq!(at(-1.5).unwrap(), None);
     }
 
     #[test]

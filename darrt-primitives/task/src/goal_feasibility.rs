@@ -94,18 +94,20 @@ impl<'a> Feasibility<'a> {
         }
         let by_hand = if goal.state() == GoalState::Released { &self.place } else { &self.pick };
         let lack = by_hand.as_ref().err()?;
-        if self.may_hold_at_start(goal) {
-            return None;
-        }
         let start = &self.object.on;
         let is_across = |on: &str| problem.surfaces_across(self.object).iter().any(|name| name == on);
-        match goal.on.as_deref().filter(|on| on != start && !is_across(on)) {
+        let elsewhere = goal.on.as_deref().filter(|on| on != start && !is_across(on));
+        if elsewhere.is_none() && self.may_hold_at_start(goal) {
+            return None;
+        }
+        match elsewhere {
             Some(on) => Some(format!("{key} wants it on `{on}`, it starts on `{start}`, and {lack}")),
             None => self.push.as_ref().err().map(|push| format!("{key} wants it to move, but {lack}, and {push}")),
         }
     }
 
-    /// Whether the object may already be where the goal wants it; by x and y alone, so that "no" is certain.
+    /// Whether the object may already be where the goal wants it, if that is on what it stands on; by x and y alone, so that
+    /// "no" is certain.
     fn may_hold_at_start(&self, goal: &ObjectGoal) -> bool {
         let [x, y] = self.object.at;
         let beside = match goal.target() {
@@ -285,6 +287,16 @@ mod tests {
         });
         let neither = neither.unwrap();
         assert!(neither.contains("`goal.object[0]`") && neither.contains("`goal.object[1]` wants it in the hand"));
+    }
+
+    /// Anywhere on another surface is not where it stands, whatever x and y.
+    #[test]
+    fn anywhere_on_another_surface_needs_a_hand() {
+        let why = said(|p| {
+            without(p, &PrimitiveName::PICK);
+            p.goal.objects[0].at = None;
+        });
+        assert!(why.is_some_and(|why| why.contains("wants it on `side table`") && why.contains("`Pick` is not among")));
     }
 
     #[test]

@@ -74,6 +74,21 @@ pub enum PlanningError {
         /// Where the object would be, metres.
         at: [f64; 3],
     },
+    /// The base cannot stand where the goal of the robot wants it: something fixed is in the way.
+    #[error(
+        "`goal.robot.base` is blocked: at ({:.3}, {:.3}), turned by {:.3} rad, `{link}` is {:.0} mm in `{by}`",
+        base[0], base[1], base[2], deep_m * 1000.0
+    )]
+    BaseGoalBlocked {
+        /// A link that the base carries.
+        link: String,
+        /// What is in the way.
+        by: String,
+        /// Where the base would be: x, y in metres, yaw in radians.
+        base: [f64; 3],
+        /// How deep the one would be in the other, metres.
+        deep_m: f64,
+    },
     /// Something is wrong, and something else may be why.
     #[error("{error} ({doubts})")]
     Doubtful {
@@ -116,7 +131,10 @@ impl PlanningError {
     /// Is it proven that the problem, as it is written, has no plan? Else something of it cannot be used, or is not known.
     pub fn is_impossible(&self) -> bool {
         match self {
-            Self::GoalBlocked { .. } | Self::GoalEnclosed { .. } | Self::InfeasibleGoal { .. } => true,
+            Self::GoalBlocked { .. }
+            | Self::GoalEnclosed { .. }
+            | Self::BaseGoalBlocked { .. }
+            | Self::InfeasibleGoal { .. } => true,
             Self::Doubtful { error, .. } => error.is_impossible(),
             _ => false,
         }

@@ -189,7 +189,7 @@ struct Told {
 
 impl Told {
     fn choose(options: &BenchOptions) -> Result<Self, Failure> {
-        let report = options.report.as_deref().map(output::writable).transpose()?;
+        let report = options.report.as_deref().map(output::writable_page).transpose()?;
         let out = options.out.as_deref().unwrap_or(Path::new(DEFAULT_OUT));
         let problems = options.problems.iter().map(|name| ("problem file", Path::new(name)));
         let results = options.merge.iter().map(|path| ("file of results", path.as_path()));

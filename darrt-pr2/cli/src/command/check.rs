@@ -54,7 +54,7 @@ pub(crate) fn run(program: &dyn Program, options: &CheckOptions, output: &mut Ou
         };
         let warnings = proof.warnings.iter().map(|warning| format!("\nwarning:  {warning}"));
         let clock = plan.timing.as_ref().map_or_else(String::new, |timing| format!("\n{}", clock(timing)));
-        output.print(&format!("{name}: {verdict}\n{}{clock}{}", words(&proof), warnings.collect::<String>()))?;
+        output.tell(&format!("{name}: {verdict}\n{}{clock}{}", words(&proof), warnings.collect::<String>()))?;
         notices(&plan, output)?;
     }
     if is_refused {
@@ -92,11 +92,16 @@ fn json(plan: &PlanFile, proof: &Proof, is_accepted: bool) -> Result<String, Fai
 
 /// The same for a plan that is refused.
 fn refused(refusal: &Refusal) -> Result<String, Failure> {
+    written(&serde_json::json!({ "accepted": false, "refusal": self::refusal(refusal) }))
+}
+
+/// What is wrong with a plan, for programs.
+pub(super) fn refusal(refusal: &Refusal) -> serde_json::Value {
     let Refusal { step, primitive, time, kind, bodies, place, message } = refusal;
     let primitive = primitive.as_ref().map(PrimitiveName::as_str);
     let bodies = bodies.as_deref().map(|(a, b)| [a, b]);
-    written(&serde_json::json!({ "accepted": false, "refusal": { "kind": format!("{kind:?}"), "step": step,
-        "primitive": primitive, "time": time, "bodies": bodies, "place": place, "message": message } }))
+    serde_json::json!({ "kind": format!("{kind:?}"), "step": step, "primitive": primitive, "time": time, "bodies": bodies,
+        "place": place, "message": message })
 }
 
 fn written(value: &serde_json::Value) -> Result<String, Failure> {
@@ -141,7 +146,7 @@ pub(crate) fn clock(timing: &Timing) -> String {
 /// What a person should know besides.
 pub(crate) fn notices(plan: &PlanFile, output: &mut Output) -> Result<(), Failure> {
     let lines = goal_edges::notices(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
-    lines.iter().try_for_each(|line| output.print(&format!("notice:   {line}")))
+    lines.iter().try_for_each(|line| output.tell(&format!("notice:   {line}")))
 }
 
 fn clearance(kind: &str, smallest: &SmallestClearance) -> String {

@@ -56,9 +56,8 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     verify::verify_with(&plan, &robot, &VerifyOptions::default())
         .map_err(|refusal| Failure::new(Exit::Refused, on_one_line(&format!("{name}: refused: {refusal}"))))?;
     let execution = Execution::new(&plan, &robot).map_err(|error| refuse(&error))?;
-    let places = [&options.page, &options.mcap].map(|path| path.as_deref().map(output::writable).transpose());
-    let [page_place, mcap_place] = places;
-    let (page_place, mcap_place) = (page_place?, mcap_place?);
+    let page_place = options.page.as_deref().map(output::writable_page).transpose()?;
+    let mcap_place = options.mcap.as_deref().map(output::writable).transpose()?;
     let read = [("plan", path), ("noise file", Path::new(&options.noise))];
     let written = [("page", &page_place), ("recording", &mcap_place)];
     let written: Vec<_> = written.iter().filter_map(|(what, place)| Some((*what, place.as_deref()?))).collect();
@@ -70,7 +69,7 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
         if options.json {
             output.print(&output::json(&prediction, "the prediction")?)?;
         } else if !options.quiet {
-            output.print(&expected(&prediction, &objects))?;
+            output.tell(&expected(&prediction, &objects))?;
         }
         return Ok(Exit::Solved);
     }
@@ -90,7 +89,7 @@ pub(crate) fn run(program: &dyn Program, options: &ExecuteOptions, output: &mut 
     if options.json {
         output.print(&json(&runs, &noise, options.seed, count, execution.duration_s(), &prediction())?)?;
     } else if !options.quiet {
-        output.print(&words(&runs, execution.duration_s(), &prediction()))?;
+        output.tell(&words(&runs, execution.duration_s(), &prediction()))?;
     }
     let shown = runs.runs.iter().find(|run| !run.is_success).or(runs.runs.first());
     if let Some(shown) = shown.filter(|_| page_place.is_some() || mcap_place.is_some())

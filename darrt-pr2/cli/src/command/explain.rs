@@ -33,7 +33,7 @@ pub(crate) fn run(program: &dyn Program, options: &ExplainOptions, output: &mut 
     if options.json {
         output.print(&output::json(&explanation, "the explanation")?)?;
     } else {
-        output.print(&words(&explanation))?;
+        output.tell(&words(&explanation))?;
     }
     Ok(match () {
         () if explanation.is_interrupted => Exit::Interrupted,

@@ -33,8 +33,10 @@ use darrt_task::viewer::search::SearchData;
 /// # Errors
 /// Every end but a verified plan that is written, with its exit code.
 pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
+    // A plan on the standard output is alone there.
+    let is_quiet = options.quiet || options.output.as_deref().is_some_and(output::is_stdout);
     let problem = options.safety.applied(
-        opened(program, (&options.problem, options.robot.as_ref()), options.quiet, output)?,
+        opened(program, (&options.problem, options.robot.as_ref()), is_quiet, output)?,
         &options.problem,
     )?;
     check_recorded(options)?;
@@ -45,10 +47,10 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
     let mut progress = Progress::start(&request.problem.name, limit(&request), options.quiet);
     let (result, kept) = planned(program, options, (&request, &files), &cancel, &mut progress)?;
     progress.finish();
-    if let Some(kept) = kept.filter(|_| !options.quiet) {
-        output.print(&kept)?;
+    if let Some(kept) = kept.filter(|_| !is_quiet) {
+        output.tell(&kept)?;
     }
-    if options.stats {
+    if options.stats && !is_quiet {
         output.print(&statistics::report(&result.accounts))?;
     }
     let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else {
@@ -57,32 +59,32 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
     let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
     let story = Story::of_plan(plan, &robot)?;
     // First of all: a terminal that has gone away must not cost the plan.
-    plan.write(&files.plan)?;
-    if !options.quiet {
-        output.print(&summary(&request, &result, cancel.is_cancelled()))?;
+    files.put(plan, output)?;
+    if !is_quiet {
+        output.tell(&summary(&request, &result, cancel.is_cancelled()))?;
         if let Some(words) = improvement(&result, &story, &robot)? {
-            output.print(&words)?;
+            output.tell(&words)?;
         }
         output.print(&steps::table(&story))?;
-        output.print(&check::words(proof))?;
+        output.tell(&check::words(proof))?;
         match (&plan.timing, &result.no_clock) {
             (Some(timing), _) => output.print(&check::clock(timing))?,
-            (None, Some(why)) => output.print(&format!("notice:   {why}"))?,
+            (None, Some(why)) => output.tell(&format!("notice:   {why}"))?,
             (None, None) => {}
         }
-        output.print(&safety::margins(&request.problem))?;
+        output.tell(&safety::margins(&request.problem))?;
         if !proof.warnings.is_empty() {
-            output.print(&safety::notices(&proof.warnings))?;
+            output.tell(&safety::notices(&proof.warnings))?;
         }
         check::notices(plan, output)?;
         for shown in result.doubts.iter().filter_map(|doubt| doubt.refuted.as_ref()) {
-            output.print(&format!("notice:   {shown}"))?;
+            output.tell(&format!("notice:   {shown}"))?;
         }
     }
     // Last: nobody waits for a picture to read the steps.
     files.keep(&result)?;
     files.draw(plan, &story, &robot, result.recording.as_ref())?;
-    if !options.quiet {
+    if !is_quiet {
         output.print(&files.words(&result))?;
     }
     if let Some((path, _)) = files.picture.as_ref().filter(|_| options.open) {
@@ -107,7 +109,7 @@ pub(super) fn opened(
     let (problem, changes) = program.with_robot(problem, robot).map_err(failed)?;
     program.check(&problem, name)?;
     if !quiet {
-        changes.iter().try_for_each(|change| output.print(&format!("{}: {change}", problem.name)))?;
+        changes.iter().try_for_each(|change| output.tell(&format!("{}: {change}", problem.name)))?;
     }
     Ok(problem)
 }
@@ -201,13 +203,13 @@ fn failed(
         .diagnose(request, result)
         .map_err(|error| Failure::input(located(&options.problem, &error.to_string())))?;
     write_why(options, &diagnosis)?;
-    if options.stats {
+    if options.stats && !options.output.as_deref().is_some_and(output::is_stdout) {
         output.print(&diagnosis::details(result, &diagnosis))?;
     }
     let mut why = diagnosis::explain(result, &diagnosis);
     let mut exit = if result.stop == Stop::Cancelled { Exit::Interrupted } else { Exit::NotSolved };
     if let Some((plan, _)) = &result.partial {
-        let path = files.write_partial(program, plan)?;
+        let path = files.write_partial(program, plan, output)?;
         why = format!("{why}\n  {}", diagnosis::text::of_partial(plan, &path));
         exit = Exit::Partial;
     }
@@ -241,7 +243,10 @@ fn refused(
 ) -> Failure {
     let exit = Exit::from(error);
     let message = on_one_line(&located(&options.problem, &error.to_string())).into_owned();
-    let Some(diagnosis) = Diagnosis::of_error(&request.problem.name, error) else { return Failure::new(exit, message) };
+    let Some(diagnosis) = Diagnosis::of_error(&request.problem.name, error) else {
+        let unwritten = |path: &PathBuf| format!("{message}; --why: there is no search to explain, {} is not written", path.display());
+        return Failure::new(exit, options.why.as_ref().map_or_else(|| message.clone(), unwritten));
+    };
     if let Err(failure) = write_why(options, &diagnosis) {
         return failure;
     }
@@ -289,7 +294,7 @@ fn improvement(result: &PlanResult, story: &Story, robot: &RobotFacts) -> Result
         .map(|story| story.steps.iter().fold(Travel::default(), |sum, step| sum.plus(&Travel::of(story, step))));
     Ok(Some(format!(
         "improved: {} to {} steps, {:.1} to {:.1} m driven, {:.0} to {:.0} degrees turned, {:.0} to {:.0} rad of arm travel, \
-         {found_s:.0} to {seconds:.0} s (before: not counting ways around what is blocked)",
+         {found_s:.0} to {seconds:.0} s (before: without the ways around what is in the way)",
         before.steps.len(),
         story.steps.len(),
         from.base_m,
@@ -303,6 +308,7 @@ fn improvement(result: &PlanResult, story: &Story, robot: &RobotFacts) -> Result
 
 /// The files to write, checked before the work.
 struct Files {
+    /// Also [the standard output](output::is_stdout).
     plan: PathBuf,
     picture: Option<(PathBuf, Format)>,
     record: Option<PathBuf>,
@@ -318,9 +324,10 @@ impl Files {
         let picture = match (&options.picture, options.no_picture) {
             (_, true) => None,
             (Some(path), _) => Some(path.clone()),
+            (None, _) if output::is_stdout(&plan) => None,
             (None, _) => Some(beside(&plan)),
         };
-        let plan = output::writable(&plan)?;
+        let plan = if output::is_stdout(&plan) { plan } else { output::writable(&plan)? };
         let picture = match picture {
             Some(path) => Some((output::writable(&path)?, Format::of_path(&path)?)),
             None => None,
@@ -366,6 +373,14 @@ impl Files {
         }
     }
 
+    /// Puts the plan where it was asked for.
+    fn put(&self, plan: &PlanFile, output: &mut Output) -> Result<(), Failure> {
+        if output::is_stdout(&self.plan) {
+            return output.print(&plan.to_json_in(Path::new("."))?);
+        }
+        Ok(plan.write(&self.plan)?)
+    }
+
     /// Writes the recorded search, if there is one.
     fn keep(&self, result: &PlanResult) -> Result<(), Failure> {
         match (&self.record, &result.recording) {
@@ -383,9 +398,14 @@ impl Files {
     }
 
     /// Writes the beginning of a plan beside where the plan would be, and its picture; says where.
-    fn write_partial(&self, program: &dyn Program, plan: &PlanFile) -> Result<PathBuf, Failure> {
-        let path = with_mark(&self.plan, "partial");
-        plan.write(&path)?;
+    fn write_partial(&self, program: &dyn Program, plan: &PlanFile, output: &mut Output) -> Result<PathBuf, Failure> {
+        let is_stdout = output::is_stdout(&self.plan);
+        let path = if is_stdout { PathBuf::from("the standard output") } else { with_mark(&self.plan, "partial") };
+        if is_stdout {
+            self.put(plan, output)?;
+        } else {
+            plan.write(&path)?;
+        }
         // A page tells why there is no plan as well, and is written then.
         if let Some((picture, format)) = self.picture.as_ref().filter(|(_, format)| *format != Format::Html) {
             let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;

@@ -23,8 +23,8 @@ pub(crate) fn run(program: &dyn Program, options: &ProblemsOptions, output: &mut
         output.print(&format!("{}{}", if number == 0 { "" } else { "\n" }, group.title))?;
         output.print(&list(&problems))?;
     }
-    output.print("\nPaper: mean planning time of ten trials that the paper reports for the problem of that name.")?;
-    output.print("Solve one with `darrt plan NAME`, copy one with `darrt problems --print NAME > FILE`.")?;
+    output.tell("\nPaper: mean planning time of ten trials that the paper reports for the problem of that name.")?;
+    output.tell("Solve one with `darrt plan NAME`, copy one with `darrt problems --print NAME > FILE`.")?;
     Ok(Exit::Solved)
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use darrt_task::text_file;
 use darrt_task::file_kind::FileKind;
 use darrt_task::file_robot::inspect::{Inspection, inspect};
 use darrt_task::file_robot::{guess, shipped, trial};
@@ -49,13 +50,14 @@ fn list(options: &RobotListOptions, output: &mut Output) -> Result<Exit, Failure
 
 fn check(program: &dyn Program, options: &RobotCheckOptions, output: &mut Output) -> Result<Exit, Failure> {
     let name = &options.robot;
+    not_stdin(Path::new(name))?;
     let inspection = inspect(name)?;
     output.print(&format!("{name}: {}", inspection.name))?;
-    inspection.understood.iter().try_for_each(|line| output.print(line))?;
+    inspection.understood.iter().try_for_each(|line| output.tell(line))?;
     if options.pairs {
         inspection.pairs.iter().try_for_each(|line| output.print(&format!("pair:     {line}")))?;
     }
-    inspection.odd.iter().try_for_each(|line| output.print(&format!("odd:      {line}")))?;
+    inspection.odd.iter().try_for_each(|line| output.tell(&format!("odd:      {line}")))?;
     if let Some(path) = &options.problem {
         let place = output::writable(path)?;
         if path.exists() && FileKind::of_file(path) != Some(FileKind::Problem) {
@@ -122,7 +124,17 @@ pub(super) fn draw(
     Ok(place)
 }
 
+/// Robots are files that name other files.
+fn not_stdin(path: &Path) -> Result<(), Failure> {
+    if path == Path::new(text_file::STDIN) {
+        let why = "a robot is read from a file, not from the standard input, for it names files that lie beside it";
+        return Err(Failure::input(format!("{}: {why}", path.display())));
+    }
+    Ok(())
+}
+
 fn new(options: &RobotNewOptions, output: &mut Output) -> Result<Exit, Failure> {
+    not_stdin(&options.urdf)?;
     let path = options.output.clone().unwrap_or_else(|| options.urdf.with_extension("toml"));
     if path.exists() {
         return Err(Failure::new(Exit::CannotWrite, format!("{}: is there already", path.display())));

@@ -52,7 +52,7 @@ pub(crate) fn run(program: &dyn Program, options: &WhyNotOptions, output: &mut O
     if options.json {
         output.print(&output::json(&answer, "the answer")?)?;
     } else {
-        output.print(&words(&request.idea, &answer))?;
+        output.tell(&words(&request.idea, &answer))?;
     }
     Ok(if answer.fault.is_none() { Exit::Solved } else { Exit::NotSolved })
 }
@@ -75,15 +75,19 @@ fn of_plan(program: &dyn Program, options: &WhyNotOptions, output: &mut Output) 
         Failure::input(on_one_line(&format!("{}: {error}", options.source)))
     };
     let facts = program.facts(&from.problem).map_err(|error| Failure::input(error.to_string()))?;
-    let mut lines = Vec::new();
-    match verify_with(&from, &facts, &VerifyOptions::default()) {
-        Err(refusal) => lines.push(format!("wrong first: {refusal}")),
-        Ok(_) if is_partial => lines.push(format!("its {} are right; {remains}", counted(of as u64, "step"))),
-        Ok(_) => {
-            output.print(&format!("{}: nothing is wrong with it", options.source))?;
-            return Ok(Exit::Solved);
-        }
+    let refusal = verify_with(&from, &facts, &VerifyOptions::default()).err();
+    if refusal.is_none() && !is_partial {
+        output.print(&if options.json {
+            output::json(&serde_json::json!({ "plan": options.source, "wrong": null }), "the answer")?
+        } else {
+            format!("{}: nothing is wrong with it", options.source)
+        })?;
+        return Ok(Exit::Solved);
     }
+    let mut lines = vec![match &refusal {
+        Some(refusal) => format!("wrong first: {refusal}"),
+        None => format!("its {} are right; {remains}", counted(of as u64, "step")),
+    }];
     let whole = ReplanRequest { plan: request.clone(), from, keep: None };
     let replanned = program.replan(&whole, &cancel, &mut Silent).map_err(failed)?;
     let kept = match (replanned.kept, replanned.tail) {
@@ -91,16 +95,30 @@ fn of_plan(program: &dyn Program, options: &WhyNotOptions, output: &mut Output) 
         (kept, 0) => format!("with the first {} kept", counted(kept as u64, "step")),
         (kept, tail) => format!("with the first {kept} and the last {} kept", counted(tail as u64, "step")),
     };
+    let mut causes = Vec::new();
     if let Some(plan) = &replanned.result.plan {
         let steps = counted(plan.steps.len() as u64, "step");
         lines.push(format!("nearest that works: {kept}, {steps} in all, verified (`darrt plan --from` writes it)"));
     } else {
         let iterations = counted(replanned.result.iterations, "iteration");
         lines.push(format!("{kept}, none was found that works in {iterations}"));
-        let diagnosis = program.diagnose(&request, &replanned.result).map_err(failed)?;
-        lines.extend(diagnosis.causes.iter().flat_map(diagnosis::text::of_cause));
+        causes = program.diagnose(&request, &replanned.result).map_err(failed)?.causes;
+        lines.extend(causes.iter().flat_map(diagnosis::text::of_cause));
     }
-    output.print(&format!("{}: {}", options.source, lines.join("\n  ")))?;
+    if options.json {
+        let answer = serde_json::json!({
+            "plan": options.source,
+            "wrong": refusal.as_ref().map(check::refusal),
+            "is_partial": is_partial,
+            "nearest": replanned.result.plan.as_ref().map(|plan| serde_json::json!({
+                "first_kept": replanned.kept, "last_kept": replanned.tail, "steps": plan.steps.len() })),
+            "iterations": replanned.result.iterations,
+            "causes": causes,
+        });
+        output.print(&output::json(&answer, "the answer")?)?;
+    } else {
+        output.tell(&format!("{}: {}", options.source, lines.join("\n  ")))?;
+    }
     Ok(Exit::NotSolved)
 }
 

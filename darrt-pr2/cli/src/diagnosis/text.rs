@@ -51,6 +51,7 @@ pub(crate) fn of_cause(cause: &Cause) -> Vec<String> {
         Cause::NoRobotGoal { tried, blockers } => {
             vec![format!("the goal of the robot: 0 of {tried} places free{}", in_the_way(blockers))]
         }
+        Cause::Doubted { what } => vec![format!("doubted before the search, and not refuted: {what}")],
         Cause::Steered { steps } => vec![format!("`steer` forbids what was tried: {}", plain_names(steps))],
         Cause::Refused { reason } => vec![format!("a plan was found, but the verifier refused it: {reason}")],
     }

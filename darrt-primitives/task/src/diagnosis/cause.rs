@@ -265,6 +265,11 @@ pub enum Cause {
         /// What was in the way, most first.
         blockers: Vec<Blocker>,
     },
+    /// What made a plan unlikely before the search, and was not refuted by a plan.
+    Doubted {
+        /// In words.
+        what: String,
+    },
     /// Rules of the problem kept steps from being taken; that is no reason by itself.
     Steered {
         /// Which steps, most first.
@@ -280,7 +285,7 @@ pub enum Cause {
 impl Cause {
     /// Does it keep every plan away, as far as was looked? The others only make one harder to find.
     pub fn is_decisive(&self) -> bool {
-        !matches!(self, Self::Behind { .. } | Self::Steered { .. } | Self::Refused { .. })
+        !matches!(self, Self::Behind { .. } | Self::Doubted { .. } | Self::Steered { .. } | Self::Refused { .. })
     }
 
     /// Does it say that an object cannot be brought to its goal from anywhere?
@@ -327,9 +332,11 @@ impl Cause {
             | Self::Behind { object, .. } => Some(object),
             Self::NoHand { hands } => Some(&hands.object),
             Self::NoPush { pushes, .. } => Some(&pushes.object),
-            Self::MissingPrimitive { .. } | Self::NoRobotGoal { .. } | Self::Steered { .. } | Self::Refused { .. } => {
-                None
-            }
+            Self::MissingPrimitive { .. }
+            | Self::NoRobotGoal { .. }
+            | Self::Doubted { .. }
+            | Self::Steered { .. }
+            | Self::Refused { .. } => None,
         }
     }
 }

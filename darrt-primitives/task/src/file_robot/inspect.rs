@@ -76,6 +76,7 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
     self_touching(&loaded, &pairs, &mut odd);
     remarks(&loaded, &mut odd);
     joints(&loaded, &mut odd);
+    pads(&loaded, &robot, &mut odd);
     let found = share_found(&robot);
     if found < FOUND {
         odd.push(format!(
@@ -289,6 +290,20 @@ fn joints(loaded: &Loaded, odd: &mut Vec<String>) {
                 "{file}: the description gives `{name}` no speed, it is planned with 1 per second: see `arm.speeds`"
             ));
         }
+    }
+}
+
+/// Pads that are longer than the tips: a length that was not measured, or a tool frame that does not look out of the hand.
+fn pads(loaded: &Loaded, robot: &FileRobot, odd: &mut Vec<String>) {
+    let (said_m, long_m) = (loaded.source.file.gripper.pad_length_m, robot.hand().pad_length_m());
+    if long_m < said_m {
+        let [said, long, wide] = [said_m, long_m, 2.0 * robot.hand().tip_half_width_m()].map(|metres| 1000.0 * metres);
+        odd.push(format!(
+            "{}:{}: `gripper.pad_length_m` is {said:.1} mm, but the tips are {long:.1} mm long (along x of the tool frame) and \
+             {wide:.1} mm wide (z): they count as long as they are; does x point out of the hand?",
+            loaded.source.name,
+            loaded.source.line("gripper.pad_length_m"),
+        ));
     }
 }
 

@@ -40,15 +40,21 @@ impl PlanFile {
     /// [`PlanFile::to_json`].
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), PlanFileError> {
         let path = path.as_ref();
-        let text = if self.problem.names_files() {
-            let mut moved = self.clone();
-            moved.problem.make_paths_start_at(folder_of(path));
-            moved.to_json()?
-        } else {
-            self.to_json()?
-        };
-        text_file::replace(path, &text)
+        text_file::replace(path, self.to_json_in(folder_of(path))?)
             .map_err(|source| PlanFileError::Write { file: path.display().to_string(), source })
+    }
+
+    /// [`PlanFile::to_json`] for a file in `folder`, with paths relative to it as [`PlanFile::write`] says.
+    ///
+    /// # Errors
+    /// As [`PlanFile::to_json`].
+    pub fn to_json_in(&self, folder: &Path) -> Result<String, PlanFileError> {
+        if !self.problem.names_files() {
+            return self.to_json();
+        }
+        let mut moved = self.clone();
+        moved.problem.make_paths_start_at(folder);
+        moved.to_json()
     }
 
     fn check_finite(&self) -> Result<(), PlanFileError> {

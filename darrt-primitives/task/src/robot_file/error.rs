@@ -29,7 +29,7 @@ pub enum RobotFileError {
         why: String,
     },
     /// The robot description cannot be used.
-    #[error("{file}: {source}")]
+    #[error("{}", described(file, source))]
     Description {
         /// The robot file.
         file: String,
@@ -75,4 +75,10 @@ impl Fault {
             format!("names the {kind} `{}`, which the description does not have{}", shown(name), hint(near.as_deref()));
         Self::new(key, why)
     }
+}
+
+/// An error that names the file by itself is not given its name again.
+fn described(file: &str, source: &UrdfError) -> String {
+    let said = source.to_string();
+    if said.starts_with(&format!("{file}: ")) { said } else { format!("{file}: {said}") }
 }

@@ -1,5 +1,6 @@
 //! Reading a robot file: guards first, then TOML, then numbers.
 
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use darrt_primitives::kinematics::MeshPlaces;
@@ -139,6 +140,9 @@ impl Source {
             if let Some(value) = values.into_iter().find(|value| value.abs() > 1e2 || value.is_nan()) {
                 return Err(wrong(key, value, "in [-100, 100]"));
             }
+            if let Some(value) = values.into_iter().find(|value| key.ends_with("rpy") && value.abs() > TAU) {
+                return Err(wrong(key, value, "in radians, at most a full turn of 6.283"));
+            }
         }
         Ok(())
     }
@@ -176,6 +180,9 @@ mod tests {
         let negative = message(&text.replace(negative, "payload_kg = -1"));
         assert!(negative.contains(&format!("my.toml:{}: `arm.payload_kg` is -1", line("payload_kg"))), "{negative}");
         assert!(message("format = = 1").starts_with("my.toml:1:"));
+        let turned = text.lines().find(|line| line.starts_with("rpy")).unwrap();
+        let degrees = message(&text.replace(turned, "rpy = [0, -90, 0]"));
+        assert!(degrees.contains("rpy` is -90, must be in radians"), "{degrees}");
     }
 
     #[test]

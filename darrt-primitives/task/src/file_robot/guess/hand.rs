@@ -5,6 +5,7 @@ use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::robot_file::BuiltHand;
+use crate::text::counted;
 
 /// How far the tool frame lies before the end of the tips, metres.
 pub(super) const BEHIND_TIPS_M: f64 = 0.02;
@@ -49,21 +50,38 @@ struct Finger {
 
 /// The hand farthest out; `None` if there is nothing like one.
 pub(super) fn guess(tree: &KinematicTree, bodies: &[Option<Body>]) -> Option<HandGuess> {
+    // Of two arms the first. What fewer joints carry than an arm has is a head, say.
+    let arms: Vec<_> = hands(tree, bodies).into_iter().filter(|(above, ..)| *above >= ARM_JOINTS).collect();
+    let best = |is_parallel: bool| arms.iter().find(|(_, _, parallel)| *parallel || !is_parallel);
+    best(true).or_else(|| best(false)).map(|(_, hand, _)| hand.clone())
+}
+
+/// Why a hand with two parallel fingers is none for planning: fewer joints carry it than an arm has. `None` if there is none.
+pub(super) fn on_a_short_arm(tree: &KinematicTree, bodies: &[Option<Body>]) -> Option<String> {
+    let (above, hand, _) = hands(tree, bodies).into_iter().find(|(.., is_parallel)| *is_parallel)?;
+    let joints = counted(above as u64, "joint");
+    Some(format!(
+        "has a hand with two fingers, at `{}`, but only {joints} carry it: an arm that takes a hand to any pose has {ARM_JOINTS} \
+         at least, and is the only kind that is planned with",
+        hand.on
+    ))
+}
+
+/// All hands on what moves: how many joints carry each, what it is, and whether its pads stay parallel; those with the most joints
+/// first.
+fn hands(tree: &KinematicTree, bodies: &[Option<Body>]) -> Vec<(usize, HandGuess, bool)> {
     let candidates = (0..tree.link_count()).filter_map(|link| {
         let fingers: Vec<_> = children(tree, link).filter_map(|child| finger(tree, bodies, child)).collect();
         (fingers.len() >= 2).then(|| (joints_above(tree, link), link, fingers))
     });
-    // Of two arms the first. What fewer joints carry than an arm has is a head, say.
     let mut hands: Vec<_> = candidates
         .filter(|(above, ..)| *above > 0)
-        .filter_map(|(above, link, fingers)| Some((above, best_pair(tree, bodies, link, &fingers)?)))
+        .filter_map(|(above, link, fingers)| {
+            best_pair(tree, bodies, link, &fingers).map(|(hand, is_parallel)| (above, hand, is_parallel))
+        })
         .collect();
-    hands.sort_by_key(|(above, _)| std::cmp::Reverse(*above));
-    let best = |is_parallel: bool| {
-        let mut arms = hands.iter().filter(|(above, _)| *above >= ARM_JOINTS);
-        arms.find(|(_, (_, parallel))| *parallel || !is_parallel).map(|(_, (hand, _))| hand.clone())
-    };
-    best(true).or_else(|| best(false))
+    hands.sort_by_key(|(above, ..)| std::cmp::Reverse(*above));
+    hands
 }
 
 /// Of the fingers of a hand whose pads stay parallel the two that reach farthest out, or any two; and do they? A hand may have links

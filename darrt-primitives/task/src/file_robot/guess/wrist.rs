@@ -1,5 +1,6 @@
 //! A hand for an arm that comes without one: where it is bolted on.
 
+use crate::text::counted;
 use darrt_geom::Body;
 use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
@@ -172,8 +173,9 @@ fn is_arm(tree: &KinematicTree, last: usize) -> Result<(), String> {
         let carried = moved_by(next).count();
         if joint + 1 < LEAST_JOINTS && carried != 1 {
             return Err(format!(
-                "and branches {joint} joints before it, at `{}`, which carries {carried} moving parts: that is a hand of more than two \
+                "and branches {} before it, at `{}`, which carries {carried} moving parts: that is a hand of more than two \
                  fingers, or one that is not planned with, or a body with legs",
+                counted(joint as u64, "joint"),
                 name(next)
             ));
         }

@@ -61,6 +61,10 @@ fn check_goal(problem: &ProblemFile, goal: &ObjectGoal, key: &str) -> Result<(),
         let text = "must have either `on`, alone or with one of `at` and `region`, or `position` alone";
         return Err(Flaw::Inconsistent(text.to_owned()).at(key));
     };
+    if goal.on.is_some() && goal.state() == GoalState::Held {
+        let text = "is `held`, but what is in the hand is on no surface; give a `position` above it instead of `on`";
+        return Err(Flaw::Inconsistent(text.to_owned()).at(format!("{key}.state")));
+    }
     match target {
         GoalTarget::On { .. } => Ok(()),
         GoalTarget::Within { .. } if goal.region.is_none() => Ok(()),

@@ -212,6 +212,8 @@ fn goals_are_clear() {
     let both = "position = [-1.0, 0.0, 0.9]\non = \"table\"\nat = [0, 0]";
     refused("position = [-1.0, 0.0, 0.9]", both, &["`goal.object[0]`", "either `on`, alone or with one of"]);
     refused_more("state = \"released\"", &["`goal.object[0].state`", "off every surface"]);
+    let held = "on = \"table\"\nstate = \"held\"";
+    refused("position = [-1.0, 0.0, 0.9]", held, &["`goal.object[0].state`", "on no surface", "`position`"]);
     refused_more("tolerance_m = 0", &["`goal.object[0].tolerance_m`", "is 0"]);
     refused_more("yaw_tolerance = 4", &["`goal.object[0].yaw_tolerance`", "is 4"]);
     let elsewhere = "at = [0.0, 0.0]\nsurfaces = []\n[[goal";
