@@ -17,6 +17,26 @@ pub struct Growth<'a, D: Domain> {
 }
 
 /// Is told how trees grow.
+///
+/// # Example
+/// ```
+/// use darrt_core::domain::Domain;
+/// use darrt_core::record::{Growth, Recorder};
+/// use darrt_core::validity::Blame;
+///
+/// /// How often each node was extended without anything in the way.
+/// #[derive(Default)]
+/// struct Extended(std::collections::BTreeMap<u32, usize>);
+///
+/// impl<D: Domain> Recorder<D> for Extended {
+///     fn on_growth(&mut self, _attempt: u64, _iteration: u64, growth: &Growth<'_, D>, blame: Option<&Blame>) {
+///         if let (Some(node), None) = (growth.extended, blame) {
+///             *self.0.entry(node).or_default() += 1;
+///         }
+///     }
+/// }
+/// ```
+/// [`solve_recorded`](crate::solve::solve_recorded) takes it.
 pub trait Recorder<D: Domain>: Send {
     /// Called for each attempt before its first iteration, and after each. From the thread on which it happens, one call at a
     /// time; calls for concurrent attempts interleave. `blame` is what blocked the extension.

@@ -13,6 +13,35 @@ use crate::object_space::upright;
 
 /// The values of an arm's joints: an array of `f64` for an arm whose number of joints is known when the program is compiled,
 /// [`Joints`](crate::joints::Joints) for one that comes as a file.
+///
+/// # Laws
+/// As many values come back from `as_ref` as went into `from_values`, and the same ones; `zeros` of as many is one of them.
+///
+/// # Example
+/// Joints with names, for a robot whose code speaks of them.
+/// ```
+/// use darrt_primitives::manipulator::JointVector;
+///
+/// #[derive(Debug, Clone, Copy, PartialEq)]
+/// struct Scara([f64; 3]);
+///
+/// impl Scara {
+///     fn lift_m(&self) -> f64 { self.0[2] }
+/// }
+/// impl AsRef<[f64]> for Scara {
+///     fn as_ref(&self) -> &[f64] { &self.0 }
+/// }
+/// impl AsMut<[f64]> for Scara {
+///     fn as_mut(&mut self) -> &mut [f64] { &mut self.0 }
+/// }
+/// impl JointVector for Scara {
+///     fn from_values(values: &[f64]) -> Option<Self> { values.try_into().ok().map(Self) }
+///     fn zeros(count: usize) -> Option<Self> { (count == 3).then_some(Self([0.0; 3])) }
+/// }
+///
+/// assert_eq!(Scara::from_values(&[0.1, 0.2, 0.3]).map(|q| q.lift_m()), Some(0.3));
+/// assert_eq!(Scara::from_values(&[0.1]), None);
+/// ```
 pub trait JointVector: AsRef<[f64]> + AsMut<[f64]> + Copy + PartialEq + Debug + Send + Sync + 'static {
     /// These values; `None` when there are more or fewer than this vector can have.
     fn from_values(values: &[f64]) -> Option<Self>;
@@ -72,6 +101,24 @@ pub struct RobotLink {
 
 /// The facts about a two-finger gripper that contacts and grasps need. Tool frame: x forward out of the hand, y the
 /// finger opening axis, z the finger width axis.
+///
+/// # Example
+/// Fingers that swing open on arcs: the wider the gap, the less far their tips reach.
+/// ```
+/// use darrt_primitives::manipulator::Hand;
+///
+/// struct Swinging { finger_m: f64 }
+///
+/// impl Hand for Swinging {
+///     fn max_gap_m(&self) -> f64 { 1.2 * self.finger_m }
+///     fn tip_beyond_tool_m(&self, gap_m: f64) -> f64 { (self.finger_m.powi(2) - (0.5 * gap_m).powi(2)).sqrt() }
+///     fn tip_half_width_m(&self) -> f64 { 0.01 }
+///     fn grip_force_n(&self) -> f64 { 60.0 }
+/// }
+///
+/// let hand = Swinging { finger_m: 0.1 };
+/// assert!((hand.tip_beyond_tool_m(0.0) - 0.1).abs() < 1e-12 && (hand.tip_beyond_tool_m(0.12) - 0.08).abs() < 1e-12);
+/// ```
 pub trait Hand: Send + Sync {
     /// The widest gap between the pads, metres.
     fn max_gap_m(&self) -> f64;

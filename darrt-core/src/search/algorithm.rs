@@ -18,6 +18,32 @@ use crate::verify::{Refusal, Solution};
 /// # Laws
 /// Pure but for the interrupt: the same beginning gives the same iterations. Every iteration makes one extension and counts
 /// it, and a solution has been accepted by the verifier of the problem.
+///
+/// # Example
+/// Not a search of its own: it follows any other one and says where it stands.
+/// ```
+/// use darrt_core::prelude::*;
+/// use darrt_core::observe::accounts::Accounts;
+/// use darrt_core::search::{Planner, Step};
+/// use darrt_core::verify::{Refusal, Solution};
+///
+/// struct Told<P>(P);
+///
+/// impl<D: Domain, P: Planner<D>> Planner<D> for Told<P> {
+///     fn prove_start(&mut self) -> Option<Result<Solution<D>, Refusal>> { self.0.prove_start() }
+///     fn step(&mut self) -> Step<D> {
+///         let step = self.0.step();
+///         if self.0.iteration() % 1000 == 0 {
+///             println!("{} nodes, {} m from the goal", self.0.nodes(), self.0.nearest_to_goal());
+///         }
+///         step
+///     }
+///     fn iteration(&self) -> u64 { self.0.iteration() }
+///     fn nodes(&self) -> usize { self.0.nodes() }
+///     fn accounts(&self) -> Accounts { self.0.accounts() }
+///     fn nearest_to_goal(&self) -> f64 { self.0.nearest_to_goal() }
+/// }
+/// ```
 pub trait Planner<D: Domain> {
     /// The empty plan, if the start lies in the goal and the verifier agrees.
     fn prove_start(&mut self) -> Option<Result<Solution<D>, Refusal>>;

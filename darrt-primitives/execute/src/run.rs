@@ -37,6 +37,28 @@ pub struct Execution<'a> {
 }
 
 /// Who makes another plan when the one under way no longer fits.
+///
+/// # Example
+/// ```
+/// use darrt_core::budget::Cancel;
+/// use darrt_core::observe::Silent;
+/// use darrt_execute::Replan;
+/// use darrt_task::file_robot::FileRobot;
+/// use darrt_task::plan_file::PlanFile;
+/// use darrt_task::planning::{PlanRequest, plan};
+/// use darrt_task::problem_file::ProblemFile;
+/// use darrt_task::registry::Registry;
+///
+/// /// Plans anew, whatever is left of the old plan.
+/// struct Afresh(Registry<FileRobot>);
+///
+/// impl Replan for Afresh {
+///     fn replan(&self, problem: &ProblemFile, old: &PlanFile) -> Option<PlanFile> {
+///         let request = PlanRequest::new(problem.clone(), old.planner.seed);
+///         plan(&self.0, &request, &Cancel::new(), &mut Silent).ok()?.plan
+///     }
+/// }
+/// ```
 pub trait Replan: Sync {
     /// A plan for `problem`, which is as the robot sees the world now, from `old` with what of it still fits; `None` if there is
     /// none. The same for the same arguments.

@@ -19,6 +19,30 @@ use crate::replan::{ReplanRequest, Replanned, replan};
 use crate::robot::{RobotError, RobotFacts, TaskRobot};
 
 /// A robot with its primitives and problems, ready to be asked.
+///
+/// A [`Registry`] is one for its own kind of robot, [`Robots`] for several.
+///
+/// # Example
+/// What a command of one's own does with it.
+/// ```
+/// use darrt_core::budget::Cancel;
+/// use darrt_core::observe::Silent;
+/// use darrt_task::file_robot::FileRobot;
+/// use darrt_task::planning::PlanRequest;
+/// use darrt_task::program::Program;
+/// use darrt_task::registry::Registry;
+///
+/// /// Steps of the plans of a problem by seed.
+/// fn steps(program: &dyn Program, problem: &str) -> Result<Vec<Option<usize>>, Box<dyn std::error::Error>> {
+///     let problem = program.open(problem)?;
+///     let plan = |seed| program.plan(&PlanRequest::new(problem.clone(), seed), &Cancel::new(), &mut Silent);
+///     (0..10).map(|seed| Ok(plan(seed)?.plan.map(|found| found.steps.len()))).collect()
+/// }
+///
+/// let program = Registry::<FileRobot>::new();
+/// assert!(Program::contracts(&program).len() >= 8, "the paper's primitives");
+/// assert!(steps(&program, "no-such-problem").is_err());
+/// ```
 pub trait Program: Send + Sync {
     /// The problems inside.
     fn problems(&self) -> &Collection;

@@ -19,6 +19,64 @@ use crate::robot_file::RobotFileError;
 /// # Laws
 /// - The links of [`TaskRobot::facts`], moved by [`TaskRobot::joint_values`], stand where [`Manipulator::link_poses`] says.
 /// - [`RobotFacts::start`] holds of the configuration that [`TaskRobot::build`] returns.
+///
+/// # Example
+/// The robot of a robot file, with a closed form for the inverse kinematics of its arm.
+/// ```
+/// use darrt_primitives::joints::Joints;
+/// use darrt_primitives::manipulator::{Configuration, Manipulator};
+/// use darrt_task::file_robot::FileRobot;
+/// use darrt_task::problem_file::Robot as Settings;
+/// use darrt_task::robot::{RobotError, RobotFacts, TaskRobot};
+/// # use darrt_primitives::kinematics::JointLimit;
+/// # use darrt_primitives::manipulator::{Hand, RobotLink};
+/// # use nalgebra::Isometry3;
+/// # use rand::Rng;
+/// # fn closed_form(_: &[f64; 3], _: &Isometry3<f64>) -> Option<Joints> { None }
+///
+/// struct Closed(FileRobot);
+///
+/// impl Manipulator for Closed {
+///     type Joints = Joints;
+///     fn inverse(&self, base: &[f64; 3], tool: &Isometry3<f64>, rng: &mut dyn Rng) -> Option<Joints> {
+///         closed_form(base, tool).or_else(|| self.0.inverse(base, tool, rng))
+///     }
+///     // All else is asked of the robot of the file.
+///     fn hand(&self) -> &dyn Hand { self.0.hand() }
+/// #   fn limits(&self) -> &[JointLimit] { self.0.limits() }
+/// #   fn world_from_tool(&self, q: &Configuration<Joints>) -> Isometry3<f64> { self.0.world_from_tool(q) }
+/// #   fn inverse_near(&self, base: &[f64; 3], tool: &Isometry3<f64>, near: &Joints) -> Option<Joints> {
+/// #       self.0.inverse_near(base, tool, near)
+/// #   }
+/// #   fn base_for(&self, tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] { self.0.base_for(tool, rng) }
+/// #   fn may_reach(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> bool { self.0.may_reach(base, tool) }
+/// #   fn links(&self) -> &[RobotLink] { self.0.links() }
+/// #   fn self_pairs(&self) -> &[(usize, usize)] { self.0.self_pairs() }
+/// #   fn link_poses(&self, q: &Configuration<Joints>, gap_m: f64, out: &mut [Isometry3<f64>]) {
+/// #       self.0.link_poses(q, gap_m, out);
+/// #   }
+/// #   fn travel_m(&self, a: &Configuration<Joints>, b: &Configuration<Joints>, held_reach_m: f64) -> f64 {
+/// #       self.0.travel_m(a, b, held_reach_m)
+/// #   }
+/// #   fn joint_weights_m(&self) -> &[f64] { self.0.joint_weights_m() }
+/// }
+///
+/// impl TaskRobot for Closed {
+///     fn models() -> Vec<String> { FileRobot::models() }
+///     fn posture_names(settings: &Settings) -> Result<Vec<String>, RobotError> { FileRobot::posture_names(settings) }
+///     fn build(settings: &Settings) -> Result<(Self, Joints), RobotError> {
+///         let (robot, start) = FileRobot::build(settings)?;
+///         Ok((Self(robot), start))
+///     }
+///     fn facts(settings: &Settings) -> Result<RobotFacts, RobotError> { FileRobot::facts(settings) }
+///     fn posture(&self, name: &str) -> Option<Joints> { self.0.posture(name) }
+///     fn joint_values(&self, q: &Configuration<Joints>, gap_m: f64) -> Vec<f64> { self.0.joint_values(q, gap_m) }
+/// }
+/// let settings = Settings { model: Some("panda-arm".to_owned()), ..Settings::default() };
+/// let (robot, start) = Closed::build(&settings)?;
+/// assert_eq!(robot.limits().len(), AsRef::<[f64]>::as_ref(&start).len());
+/// # Ok::<(), RobotError>(())
+/// ```
 pub trait TaskRobot: Manipulator + Sized {
     /// The names by which `model` in problem files may call it.
     fn models() -> Vec<String>;
