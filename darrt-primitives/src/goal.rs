@@ -208,6 +208,12 @@ impl<J> TabletopGoal<J> {
 }
 
 impl<J: JointVector> TabletopGoal<J> {
+    /// The goals for the objects alone.
+    #[must_use]
+    pub fn of_objects(&self) -> Self {
+        Self { groups: self.groups.clone(), robot: None }
+    }
+
     /// The goal for the robot alone, if there is one.
     pub fn of_robot(&self) -> Option<Self> {
         self.robot.is_some().then(|| Self { groups: Vec::new(), robot: self.robot.clone() })

@@ -27,6 +27,11 @@ pub fn asks_for_group<M: Manipulator>(from: &TabletopState<M>, to: &Target<M>, g
     })
 }
 
+/// Where the target wants the base, if it names it.
+pub fn named_base<M: Manipulator>(to: &Target<M>) -> Option<[f64; 3]> {
+    to.robot().filter(|target| target.groups.covers(BASE)).map(|target| target.config.base)
+}
+
 /// Named objects that are not where they should be and that pass `test`.
 pub fn unmet_objects<'a, M: Manipulator>(
     m: &'a Tabletop<M>,
@@ -74,7 +79,8 @@ pub fn asks_to_pick<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>, ob
     from.mode.support_of(object).is_some() && m.movable(object).is_some_and(|o| !o.grasps.is_empty())
 }
 
-/// The pose in the air that the target asks the held object to take, if that is what it asks.
+/// The pose in the air that the target asks the held object to take, if that is what it asks. What is a little above a surface
+/// may be meant so, or [to stand on it](held_target_on_surface): only what stands for certain is not in the air.
 pub fn held_target_in_air<'a, M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
@@ -82,7 +88,7 @@ pub fn held_target_in_air<'a, M: Manipulator>(
 ) -> Option<&'a Isometry3<f64>> {
     let held = from.mode.held()?.object;
     let target = to.object(held)?;
-    let in_air = surface_of_target(m, held, target).is_none();
+    let in_air = surface_of_target(m, held, target, OBJECT_TOLERANCE_M).is_none();
     (in_air && !to.is_object_met(m, from, held)).then_some(target)
 }
 
@@ -94,15 +100,20 @@ pub fn held_target_on_surface<'a, M: Manipulator>(
 ) -> Option<&'a Isometry3<f64>> {
     let held = from.mode.held()?.object;
     let target = to.object(held)?;
-    surface_of_target(m, held, target).map(|_| target)
+    surface_of_target(m, held, target, ON_SURFACE_M).map(|_| target)
 }
 
-/// The surface on which an object at `target` is meant to stand. What leans does not stand, however near the surface is:
+/// The surface within `slack_m` under an object at `target`. What leans does not stand, however near the surface is:
 /// it could only be set down upright, away from its target.
-fn surface_of_target<M: Manipulator>(m: &Tabletop<M>, object: ObjectId, target: &Isometry3<f64>) -> Option<SurfaceId> {
+fn surface_of_target<M: Manipulator>(
+    m: &Tabletop<M>,
+    object: ObjectId,
+    target: &Isometry3<f64>,
+    slack_m: f64,
+) -> Option<SurfaceId> {
     let up = target.rotation * Vector3::z();
     let leans = up.xy().norm() > UPRIGHT_TOLERANCE_RAD || up.z < 0.0;
-    if leans { None } else { m.surface_under(object, target, ON_SURFACE_M) }
+    if leans { None } else { m.surface_under(object, target, slack_m) }
 }
 
 /// Is something held that the target does not name, while another object has to be moved? The hand must be emptied.

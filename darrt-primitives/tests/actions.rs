@@ -494,7 +494,7 @@ fn a_transfer_brings_what_is_held_to_its_target() {
     for id in (0..3).map(object) {
         let from = lifted(&m, id);
         let target = upright(Vector3::new(0.4, 0.2, 1.0), 0.7);
-        let instances = first(|rng| transfer(&m, &from, &target, rng));
+        let instances = first(|rng| transfer(&m, &from, &target, None, rng));
         assert!(instances.iter().all(|i| i.object == Some(id) && i.reversible));
         let names = [primitive::ARM_RIGID_TRANSFER, primitive::BASE_RIGID_TRANSFER];
         assert!(instances.iter().all(|i| names.contains(&i.primitive)));

@@ -137,7 +137,7 @@ fn what_is_held_is_carried_and_placed_by_the_laws() {
     let m = honest_table().unwrap();
     check_action(&m, holding(&m), |from, seed| {
         let target = Isometry3::translation(0.4, 0.2, 1.1);
-        transfer(&m, from, &target, &mut stream(seed, 0, 0, Purpose::Extend))
+        transfer(&m, from, &target, None, &mut stream(seed, 0, 0, Purpose::Extend))
     });
     check_action(&m, holding(&m), |from, seed| {
         let target = Isometry3::translation(0.4, 0.2, 0.74);

@@ -114,7 +114,6 @@ pub(crate) fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> 
     let progress = diagnosis.nearest_to_goal_m.map_or_else(String::new, |metres| {
         format!(" (nearest so far: {metres:.2} m to move, in {})", counted(result.nodes as u64, "state"))
     });
-    let by_itself = if is_doubted { "" } else { ": each object can be taken and brought to its goal by itself" };
     let remedies: Vec<_> = diagnosis.remedies.iter().map(text::of_relaxation).collect();
     let is_steered = diagnosis.causes.iter().any(|cause| matches!(cause, Cause::Steered { .. }));
     let is_doubted = diagnosis.causes.iter().any(|cause| matches!(cause, Cause::Doubted { .. }));
@@ -123,6 +122,7 @@ pub(crate) fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> 
         (false, true) => "beside what is doubted nothing",
         (false, false) => "nothing",
     };
+    let by_itself = if is_doubted { "" } else { ": each object can be taken and brought to its goal by itself" };
     let or_allow = if is_steered { ", or to allow more in `steer`," } else { "" };
     let would_help = format!("it would help, as far as a few tries tell: {}", remedies.join("; or "));
     let mut lines: Vec<_> = (!remedies.is_empty()).then_some(would_help).into_iter().collect();

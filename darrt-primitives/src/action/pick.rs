@@ -70,7 +70,7 @@ pub fn pick<M: Manipulator>(
         };
         let at_grasp = grasp.world_from_tool(pose);
         let tries = m.settings().base_tries.div_ceil(2);
-        let wanted = Wanted { world_from_tool: &at_grasp, tries };
+        let wanted = Wanted { world_from_tool: &at_grasp, tries, base: None };
         let mode = beside.opened_to(grasp.open_gap_m).ok_or(Infeasible::NoGrasp)?;
         let mut probe = Probe::new(m, from, mode);
         let open = straddling(object, &grasp);

@@ -90,7 +90,7 @@ pub fn place<M: Manipulator>(
         };
         clear += 1;
         let tries = m.settings().base_tries.div_ceil(2);
-        let wanted = Wanted { world_from_tool: &at_place, tries };
+        let wanted = Wanted { world_from_tool: &at_place, tries, base: None };
         let way = stance(m, from, &wanted, rng, |q, care| {
             after.check(q, &letting_go, care)?;
             way_of(m, q, &at_place, &down, approach_m, &mut before, care)

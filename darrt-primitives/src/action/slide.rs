@@ -102,7 +102,7 @@ pub(super) fn find<M: Manipulator>(
     accepts: impl Fn(&Configuration<M::Joints>) -> bool,
     rng: &mut dyn Rng,
 ) -> Result<ArmWay<M::Joints>, Infeasible> {
-    let wanted = Wanted { world_from_tool: &hand.at_contact, tries: m.settings().base_tries };
+    let wanted = Wanted { world_from_tool: &hand.at_contact, tries: m.settings().base_tries, base: None };
     stance(m, from, &wanted, rng, |q, care| {
         if accepts(q) { arm_way(m, q, (hand, way), probe, care) } else { Err(Refused::Unreachable) }
     })

@@ -42,6 +42,8 @@ pub struct Wanted<'a> {
     pub world_from_tool: &'a Isometry3<f64>,
     /// How many bases are tried.
     pub tries: usize,
+    /// Where the base shall stand; `None`: wherever it may.
+    pub base: Option<[f64; 3]>,
 }
 
 /// Why a stance will not do.
@@ -94,7 +96,7 @@ pub fn stance<M: Manipulator, T>(
     mut accept: impl FnMut(&Configuration<M::Joints>, &mut Care) -> Result<T, Refused<M>>,
 ) -> Result<T, Infeasible> {
     let robot = m.manipulator();
-    let Wanted { world_from_tool, tries } = *wanted;
+    let Wanted { world_from_tool, tries, base: only } = *wanted;
     let [empty, loaded] = m.settings().drives;
     let drives = if from.mode.held().is_some() { loaded } else { empty };
     let here = from.robot.base;
@@ -102,7 +104,10 @@ pub fn stance<M: Manipulator, T>(
     let mut left = tries;
     // The last one is tried first.
     let mut bases: SmallVec<[[f64; 3]; NEAREST_OF]> = SmallVec::new();
-    if !drives || rng.random_bool(0.5) {
+    if let Some(base) = only.filter(|base| drives || *base == here) {
+        bases.resize(tries, base);
+        left = 0;
+    } else if !drives || rng.random_bool(0.5) {
         let stays = if drives { tries.min(1) } else { tries };
         bases.resize(stays, here);
         left -= stays;

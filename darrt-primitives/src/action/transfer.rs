@@ -15,7 +15,8 @@ use crate::mode::Contacts;
 use crate::object_space::OBJECT_TOLERANCE_M;
 use crate::tabletop::{Tabletop, TabletopState};
 
-/// Moves base and arm so that the held object comes to `target` (its yaw about its own axis free if it is round).
+/// Moves base and arm so that the held object comes to `target` (its yaw about its own axis free if it is round), with the base
+/// at `base` in the end if that is given.
 ///
 /// # Errors
 /// [`Infeasible::NoGrasp`] if nothing is held, [`Infeasible::Blocked`], [`Infeasible::Unreachable`].
@@ -23,12 +24,13 @@ pub fn transfer<M: Manipulator>(
     m: &Tabletop<M>,
     from: &TabletopState<M>,
     target: &Isometry3<f64>,
+    base: Option<[f64; 3]>,
     rng: &mut dyn Rng,
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
     let held = *from.mode.held().ok_or(Infeasible::NoGrasp)?;
     let target = freely_turned(m, held.object.index(), target, rng);
     let at_target = target * held.tool_from_object.inverse();
-    let wanted = Wanted { world_from_tool: &at_target, tries: m.settings().base_tries };
+    let wanted = Wanted { world_from_tool: &at_target, tries: m.settings().base_tries, base };
     let mut probe = Probe::new(m, from, from.mode.clone());
     let robot = stance(m, from, &wanted, rng, |q, care| probe.check(q, &Contacts::default(), care).map(|()| *q))?;
     let mut chain = Chain::at(from);

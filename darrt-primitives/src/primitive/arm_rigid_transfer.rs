@@ -9,7 +9,7 @@ use crate::action::transfer::transfer;
 use crate::manipulator::Manipulator;
 use crate::mobile_arm_space::ARM;
 use crate::tabletop::{Tabletop, TabletopState};
-use crate::target_query::held_target_in_air;
+use crate::target_query::{held_target_in_air, named_base};
 
 /// Arm-Rigid-Transfer: the arm moves an attached object towards a goal pose, in straight lines in joint space (paper section 5.1).
 #[derive(Debug, Clone, Copy, Default)]
@@ -32,7 +32,8 @@ impl<M: Manipulator> Primitive<Tabletop<M>> for ArmRigidTransfer {
         rng: &mut dyn Rng,
     ) -> Result<Instances<Tabletop<M>>, Infeasible> {
         match held_target_in_air(m, from, to) {
-            Some(pose) => transfer(m, from, pose, rng),
+            // A base that the target names is where it shall be when the object is.
+            Some(pose) => transfer(m, from, pose, named_base(to), rng),
             None => move_group(m, from, to, ARM, from.mode.gap_m()),
         }
     }

@@ -229,8 +229,10 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         if !is_known || !needs_hand || means.place.is_err() {
             return None;
         }
+        // Where the robot shall be is not what keeps an object away.
+        let goal = self.goal.of_objects();
         let target = |rng: &mut dyn Rng| {
-            let target = self.goal.sample(self.m, rng).ok_or(Infeasible::OffSupport)?;
+            let target = goal.sample(self.m, rng).ok_or(Infeasible::OffSupport)?;
             target.object(id).copied().ok_or(Infeasible::OffSupport)
         };
         let no_place = tried(TRIES, "set it down", |rng| {

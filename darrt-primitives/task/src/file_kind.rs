@@ -5,6 +5,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use crate::text::shell_word;
+use crate::text_file::STDIN;
 
 /// As much of a file as is looked at.
 const HEAD: u64 = 4096;
@@ -22,6 +23,8 @@ pub enum FileKind {
     Recording,
     /// A robot file (TOML).
     Robot,
+    /// A robot description (URDF).
+    Description,
 }
 
 impl FileKind {
@@ -39,18 +42,29 @@ impl FileKind {
             }
             return value.starts_with("\"darrt-problem\"").then_some(Self::JsonProblem);
         }
+        if text.trim_start_matches('\u{feff}').trim_start().starts_with('<') {
+            return text.contains("<robot").then_some(Self::Description);
+        }
         let formats = [("darrt-problem", Self::Problem), ("darrt-robot", Self::Robot)];
-        let said = text.lines().filter(|line| line.trim_start().starts_with("format"));
+        let said = text.lines().filter(|line| line.trim_start().trim_start_matches(['"', '\'']).starts_with("format"));
         said.flat_map(|line| formats.iter().filter(move |(name, _)| line.contains(name))).map(|(_, kind)| *kind).next()
     }
 
-    /// What the beginning of a file says; for files that are not read as a whole.
+    /// What the beginning of a file says; for files that are not read as a whole. Of the standard input
+    /// nothing is known before it is read.
     pub fn of_file(path: &Path) -> Option<Self> {
+        if path == Path::new(STDIN) {
+            return None;
+        }
         Self::of_text(&String::from_utf8_lossy(&head(path)))
     }
 
     /// Why a file of this kind is no problem file; `None` if it is one.
     pub fn instead_of_problem(self, file: &str) -> Option<String> {
+        if self == Self::Plan && file == STDIN_NAME {
+            let why = "is a plan, not a problem; judge it with `darrt check -`; other commands take plans from files";
+            return Some(why.to_owned());
+        }
         let file = shell_word(file);
         match self {
             Self::Problem => None,
@@ -59,6 +73,7 @@ impl FileKind {
                 "is a plan, not a problem; judge it with `darrt check {file}`, draw it with `darrt show {file}`"
             )),
             Self::Recording => Some(format!("is a recorded search, not a problem; draw it with `darrt show {file}`")),
+            Self::Description => Some(description(&file)),
             Self::Robot => Some(format!(
                 "is a robot file, not a problem; plan for it with `darrt plan PROBLEM --robot {file}`, draw it with `darrt show \
                  {file}`"
@@ -73,10 +88,18 @@ impl FileKind {
             Self::Plan => None,
             Self::JsonProblem => Some("is a problem as JSON, not a plan".to_owned()),
             Self::Recording => Some(format!("is a recorded search, not a plan; draw it with `darrt show {file}`")),
+            Self::Description => Some(description(&file)),
             Self::Robot => Some(format!("is a robot file, not a plan; draw it with `darrt show {file}`")),
             Self::Problem => Some(format!("is a problem, not a plan; plan it with `darrt plan {file}`")),
         }
     }
+}
+
+/// How errors call the standard input.
+const STDIN_NAME: &str = "standard input";
+
+fn description(file: &str) -> String {
+    format!("is a robot description (URDF); a robot file for it is begun with `darrt robot new {file}`")
 }
 
 /// Whether a text begins as JSON does.

@@ -55,8 +55,9 @@ pub fn check_goal<M: Manipulator>(
     room.check_enclosed()?;
     base::check(m, goal, scene, start)?;
     let mut blocked = None;
+    let objects = goal.of_objects();
     for i in 0..SAMPLES {
-        let Some(target) = goal.sample(m, &mut stream(0, 0, i, Purpose::Attempt)) else {
+        let Some(target) = objects.sample(m, &mut stream(0, 0, i, Purpose::Attempt)) else {
             return room.check_places().map(|()| None);
         };
         match room.first_blocked(&target)? {

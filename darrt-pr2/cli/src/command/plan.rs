@@ -35,10 +35,9 @@ use darrt_task::viewer::search::SearchData;
 pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
     // A plan on the standard output is alone there.
     let is_quiet = options.quiet || options.output.as_deref().is_some_and(output::is_stdout);
-    let problem = options.safety.applied(
-        opened(program, (&options.problem, options.robot.as_ref()), is_quiet, output)?,
-        &options.problem,
-    )?;
+    let problem = options
+        .safety
+        .applied(opened(program, (&options.problem, options.robot.as_ref()), is_quiet, output)?, &options.problem)?;
     check_recorded(options)?;
     let files = Files::choose(options)?;
     let request = request(options, problem);
@@ -244,7 +243,9 @@ fn refused(
     let exit = Exit::from(error);
     let message = on_one_line(&located(&options.problem, &error.to_string())).into_owned();
     let Some(diagnosis) = Diagnosis::of_error(&request.problem.name, error) else {
-        let unwritten = |path: &PathBuf| format!("{message}; --why: there is no search to explain, {} is not written", path.display());
+        let unwritten = |path: &PathBuf| {
+            format!("{message}; --why: there is no search to explain, {} is not written", path.display())
+        };
         return Failure::new(exit, options.why.as_ref().map_or_else(|| message.clone(), unwritten));
     };
     if let Err(failure) = write_why(options, &diagnosis) {

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use darrt_task::text_file;
 use darrt_task::file_kind::FileKind;
 use darrt_task::file_robot::inspect::{Inspection, inspect};
 use darrt_task::file_robot::{guess, shipped, trial};
@@ -11,6 +10,7 @@ use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
 use darrt_task::robot_file::Source;
 use darrt_task::text::shell_word;
+use darrt_task::text_file;
 
 use crate::args::{RobotCheckOptions, RobotCommand, RobotListOptions, RobotNewOptions, RobotOptions};
 use crate::drawing;

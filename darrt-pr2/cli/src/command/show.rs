@@ -95,7 +95,7 @@ fn recorded(program: &dyn Program, options: &ShowOptions, output: &mut Output) -
     let there: Vec<_> = whole.attempts.iter().map(|attempt| attempt.attempt.to_string()).collect();
     let recording = whole.at(options.attempt, options.iteration);
     if recording.attempts.is_empty() {
-        let text = format!("{}: has no such attempt; there are {}", options.source, there.join(", "));
+        let text = format!("{}: has no such attempt; its attempts: {}", options.source, there.join(", "));
         return Err(Failure::input(text));
     }
     let default = || PathBuf::from(format!("{}.search.html", output::file_stem(&recording.problem.name)));

@@ -46,7 +46,7 @@ pub(crate) fn of_cause(cause: &Cause) -> Vec<String> {
             names(others)
         )],
         Cause::NoRobotGoal { tried: 0, .. } => {
-            vec!["the goal of the robot: the arm reaches it from nowhere".to_owned()]
+            vec!["the goal of the robot: no base and arm were found that meet all its parts together".to_owned()]
         }
         Cause::NoRobotGoal { tried, blockers } => {
             vec![format!("the goal of the robot: 0 of {tried} places free{}", in_the_way(blockers))]

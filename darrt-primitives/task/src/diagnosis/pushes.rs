@@ -75,7 +75,8 @@ impl<M: Manipulator> Look<'_, M> {
     fn push_target(&self, from: &TabletopState<M>, id: ObjectId, rng: &mut dyn Rng) -> Option<Isometry3<f64>> {
         use darrt_core::goal::Goal as _;
         if rng.random_bool(0.25)
-            && let Some(target) = self.goal.sample(self.m, rng).and_then(|target| target.object(id).copied())
+            && let Some(target) =
+                self.goal.of_objects().sample(self.m, rng).and_then(|target| target.object(id).copied())
         {
             return Some(target);
         }

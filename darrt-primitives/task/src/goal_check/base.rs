@@ -1,6 +1,5 @@
 //! Can the base stand where the robot's own goal wants it?
 
-use darrt_core::domain::Domain as _;
 use darrt_geom::GeomError;
 use darrt_geom::clearance::between;
 use darrt_geom::scene::Scene;
@@ -42,7 +41,11 @@ pub(super) fn check<M: Manipulator>(
 }
 
 /// Signed distance, metres.
-fn deepest(body: &darrt_geom::Body, pose: &Isometry3<f64>, fixed: &darrt_geom::scene::FixedBody) -> Result<f64, GeomError> {
+fn deepest(
+    body: &darrt_geom::Body,
+    pose: &Isometry3<f64>,
+    fixed: &darrt_geom::scene::FixedBody,
+) -> Result<f64, GeomError> {
     Ok(between(body, pose, &fixed.body, &fixed.world_from_body)?.distance)
 }
 

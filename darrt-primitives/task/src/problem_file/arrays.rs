@@ -1,11 +1,11 @@
-//! Arrays of a fixed length: the TOML reader drops what is too much of them without a word.
+//! Arrays of a fixed length: the TOML reader drops what is too much of them without a word, and takes lists for tables.
 
 use serde::Serialize;
 use toml::Value;
 
 use super::error::{Flaw, Located};
 
-/// Every array of the text has as many entries as what was read from it.
+/// Every array of the text has as many entries as what was read from it, and none stands for a table.
 ///
 /// # Errors
 /// The first that has not, with its key.
@@ -29,6 +29,10 @@ fn walk(text: &Value, read: &Value, key: &str) -> Result<(), Located> {
             let separator = if key.is_empty() { "" } else { "." };
             read.get(name).map_or(Ok(()), |read| walk(text, read, &format!("{key}{separator}{name}")))
         }),
+        // By position, without names, nobody could tell what is what.
+        (Value::Array(_), Value::Table(_)) => {
+            Err(Flaw::Inconsistent("must be a table with keys, not a list".to_owned()).at(key))
+        }
         _ => Ok(()),
     }
 }

@@ -28,6 +28,14 @@ pub enum RobotFileError {
         /// Why not: goes on after the key.
         why: String,
     },
+    /// It is another kind of file.
+    #[error("{file}: {why}")]
+    OtherKind {
+        /// The file.
+        file: String,
+        /// What it is, and what is done with it.
+        why: String,
+    },
     /// The robot description cannot be used.
     #[error("{}", described(file, source))]
     Description {

@@ -7,6 +7,7 @@ use darrt_primitives::kinematics::MeshPlaces;
 
 use super::error::Fault;
 use super::{RobotFile, RobotFileError, VERSION};
+use crate::file_kind::FileKind;
 use crate::problem_file::arrays::check_lengths;
 use crate::problem_file::error::Flaw;
 use crate::problem_file::nesting::check_nesting;
@@ -51,6 +52,10 @@ impl Source {
     }
 
     fn parse(text: &str, name: &str, folder: Option<PathBuf>) -> Result<Self, RobotFileError> {
+        if FileKind::of_text(text) == Some(FileKind::Description) {
+            let why = FileKind::Description.instead_of_problem(name).unwrap_or_default();
+            return Err(RobotFileError::OtherKind { file: name.to_owned(), why });
+        }
         text_file::check(text, name, MAX_BYTES, check_nesting)?;
         let raw = toml::from_str::<toml::Value>(text).ok();
         let version = raw.as_ref().and_then(|raw| raw.get("version")?.as_integer());

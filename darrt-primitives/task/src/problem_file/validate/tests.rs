@@ -208,6 +208,14 @@ fn addresses_are_no_paths() {
 }
 
 #[test]
+fn tables_are_not_given_as_lists() {
+    for (list, key) in [("friction = [0.3, 0.4]", "`object[0].friction`"), ("rim = []", "`object[0].rim`")] {
+        let with = format!("at = [0.0, 0.0]\n{list}\n[[goal");
+        refused("at = [0.0, 0.0]\n[[goal", &with, &[key, "must be a table"]);
+    }
+}
+
+#[test]
 fn goals_are_clear() {
     let both = "position = [-1.0, 0.0, 0.9]\non = \"table\"\nat = [0, 0]";
     refused("position = [-1.0, 0.0, 0.9]", both, &["`goal.object[0]`", "either `on`, alone or with one of"]);
