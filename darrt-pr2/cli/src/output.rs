@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::exit::{Exit, Failure};
 use super::table::WIDTH;
+use darrt_task::file_kind::FileKind;
 use darrt_task::text::printable;
 use darrt_task::text_file;
 
@@ -115,8 +116,13 @@ pub(crate) fn is_stdout(path: &Path) -> bool {
 ///
 /// # Errors
 /// [`Exit::CannotWrite`] with the path when its folder does not exist or cannot be written, or when something that is
-/// not a regular file is there.
+/// not a regular file is there; [`Exit::BadInput`] when a problem or a robot is there, which a person wrote.
 pub(crate) fn writable(path: &Path) -> Result<PathBuf, Failure> {
+    placed(path, |_| true)
+}
+
+/// [`writable`]; `is_kept` says which of what a person wrote stays.
+fn placed(path: &Path, is_kept: impl Fn(&str) -> bool) -> Result<PathBuf, Failure> {
     let refuse = |reason: String| Failure::new(Exit::CannotWrite, format!("{}: {reason}", path.display()));
     if is_stdout(path) {
         let why = "is the standard output, where only the plan of `darrt plan` can go; a file of this name is `./-`";
@@ -127,12 +133,36 @@ pub(crate) fn writable(path: &Path) -> Result<PathBuf, Failure> {
         Ok(_) => path.canonicalize().map_err(|error| refuse(format!("cannot be written: {error}")))?,
         Err(_) => path.to_path_buf(),
     };
+    if let Some(what) = source_kind(&place).filter(|what| is_kept(what)) {
+        return Err(Failure::input(format!("{}: is there already and is {what}, it would be lost", path.display())));
+    }
     if place.file_name().is_none() {
         return Err(refuse("is not the name of a file".to_owned()));
     }
     // The new file is made and dropped again.
     text_file::beside(&place).map_err(|error| refuse(format!("cannot be written: {error}")))?;
     Ok(place)
+}
+
+/// [`writable`] for a problem, which may take the place of another one.
+///
+/// # Errors
+/// As [`writable`].
+pub(crate) fn writable_problem(path: &Path) -> Result<PathBuf, Failure> {
+    placed(path, |what| what != "a problem")
+}
+
+/// What a file is that a person wrote, if it is such a one; what this program wrote may be written over.
+fn source_kind(place: &Path) -> Option<&'static str> {
+    if place.metadata().is_ok_and(|there| there.len() == 0) {
+        return None;
+    }
+    match FileKind::of_file(place)? {
+        FileKind::Problem | FileKind::JsonProblem => Some("a problem"),
+        FileKind::Robot => Some("a robot file"),
+        FileKind::Description => Some("a robot description"),
+        FileKind::Plan | FileKind::Recording => None,
+    }
 }
 
 /// [`writable`] for a page, whose name says that it is one.

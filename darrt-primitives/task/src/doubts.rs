@@ -124,11 +124,15 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         for (id, object) in self.objects().filter(|(id, _)| self.must_move(*id)) {
             let Err(no_push) = self.means(object).push else { continue };
             if self.is_ours(PICK, |contract| contract.hand == HandUse::Takes) && lies_flat(self.m, self.start, id) {
-                let why = format!(
-                    "it is only taken by its rim, where it stands on `{}` its rim does not overhang an edge, and it is not \
-                     pushed to one: {no_push}",
-                    object.on
-                );
+                let why = if object.grasps.is_empty() {
+                    format!("it has no `grasps` for Pick, and it is not pushed: {no_push}")
+                } else {
+                    format!(
+                        "it is only taken by its rim, where it stands on `{}` its rim does not overhang an edge, and it is not \
+                         pushed to one: {no_push}",
+                        object.on
+                    )
+                };
                 return Err(PlanningError::InfeasibleGoal { object: object.name.clone(), why });
             }
         }

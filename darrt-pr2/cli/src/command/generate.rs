@@ -46,7 +46,7 @@ pub(crate) fn run(program: &dyn Program, options: &GenerateOptions, output: &mut
     let mut written = 0;
     each(program, options, &base, &cancel, |problem| {
         let path = folder.join(format!("{}.toml", output::file_stem(&problem.name)));
-        output::write_file(&output::writable(&path)?, &text(&problem)?)?;
+        output::write_file(&output::writable_problem(&path)?, &text(&problem)?)?;
         written += 1;
         bar.advance("");
         Ok(())

@@ -293,11 +293,24 @@ fn improvement(result: &PlanResult, story: &Story, robot: &RobotFacts) -> Result
     let before = Story::of_plan(found, robot)?;
     let [from, to] = [&before, story]
         .map(|story| story.steps.iter().fold(Travel::default(), |sum, step| sum.plus(&Travel::of(story, step))));
+    let steps = [before.steps.len(), story.steps.len()];
+    if seconds > found_s {
+        // What was found is shorter because it was not looked at whether all of it is free.
+        return Ok(Some(format!(
+            "improved: found with {} of {found_s:.0} s, in some of which something was in the way; free in {} of {seconds:.0} s, \
+             {:.1} m driven, {:.0} degrees turned, {:.0} rad of arm travel",
+            counted(steps[0] as u64, "step"),
+            counted(steps[1] as u64, "step"),
+            to.base_m,
+            to.base_turn.to_degrees(),
+            to.arm_turn,
+        )));
+    }
     Ok(Some(format!(
         "improved: {} to {} steps, {:.1} to {:.1} m driven, {:.0} to {:.0} degrees turned, {:.0} to {:.0} rad of arm travel, \
-         {found_s:.0} to {seconds:.0} s (before: without the ways around what is in the way)",
-        before.steps.len(),
-        story.steps.len(),
+         {found_s:.0} to {seconds:.0} s",
+        steps[0],
+        steps[1],
         from.base_m,
         to.base_m,
         from.base_turn.to_degrees(),

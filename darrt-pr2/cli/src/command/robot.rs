@@ -59,11 +59,11 @@ fn check(program: &dyn Program, options: &RobotCheckOptions, output: &mut Output
     }
     inspection.odd.iter().try_for_each(|line| output.tell(&format!("odd:      {line}")))?;
     if let Some(path) = &options.problem {
-        let place = output::writable(path)?;
         if path.exists() && FileKind::of_file(path) != Some(FileKind::Problem) {
             let text = format!("{}: is there already and is no problem, it would be lost", path.display());
             return Err(Failure::input(text));
         }
+        let place = output::writable_problem(path)?;
         let line = robot_line(name, path);
         output::write_file(&place, trial::problem(&inspection, &line, inspection.drives))?;
         output.print(&format!("problem:  {}", path.display()))?;

@@ -90,6 +90,9 @@ fn of_plan(program: &dyn Program, options: &WhyNotOptions, output: &mut Output) 
     }];
     let whole = ReplanRequest { plan: request.clone(), from, keep: None };
     let replanned = program.replan(&whole, &cancel, &mut Silent).map_err(failed)?;
+    if cancel.is_cancelled() {
+        return Err(Failure::new(Exit::Interrupted, format!("{}: interrupted", options.source)));
+    }
     let kept = match (replanned.kept, replanned.tail) {
         (0, 0) => "planned anew".to_owned(),
         (kept, 0) => format!("with the first {} kept", counted(kept as u64, "step")),

@@ -189,6 +189,7 @@ pub(crate) fn of_relaxation(relaxation: &Relaxation) -> String {
         Relaxation::Shorter { key, least_m } => format!("with {least_m} m as the least of `{key}`"),
         Relaxation::LessMargin { to_m } => format!("with `safety.least_margin_m = {to_m}`"),
         Relaxation::Tolerance { object, to_m } => format!("with `tolerance_m = {to_m}` at the goal of `{object}`"),
+        Relaxation::Lean { object, to_deg } => format!("with `max_tilt_deg = {to_deg}` of `{object}`"),
         Relaxation::WiderBounds { by_m } => format!("with `bounds` wider by {by_m} m"),
         Relaxation::Lower { obstacle, by_m } => format!("with `{obstacle}` lower by {by_m:.2} m"),
         Relaxation::Shrink { obstacle, share } => format!("with `{obstacle}` at {:.0} % of its size", share * 100.0),

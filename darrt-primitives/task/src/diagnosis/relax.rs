@@ -18,6 +18,9 @@ const LIFTS_M: std::ops::RangeInclusive<u32> = 1..=20;
 const LIFT_STEP_M: f64 = 0.05;
 /// What carries a goal is lowered by whole steps, metres.
 const LOWER_STEP_M: f64 = 0.05;
+/// How much farther an object may lean: so many times as far, and at least so far, degrees.
+const LEAN_TIMES: f64 = 2.0;
+const LEAN_DEG: f64 = 5.0;
 /// How much wider bounds and tolerances become, metres.
 const WIDER_M: f64 = 2.0;
 const LOOSER_M: f64 = 0.05;
@@ -65,6 +68,13 @@ pub enum Relaxation {
         object: String,
         /// Metres.
         to_m: f64,
+    },
+    /// An object that may lean more.
+    Lean {
+        /// The object.
+        object: String,
+        /// Degrees.
+        to_deg: f64,
     },
     /// Wider bounds of base and objects.
     WiderBounds {
@@ -133,6 +143,11 @@ impl Relaxation {
         all.push(Self::LessMargin { to_m: problem.safety.least_margin_m / 2.0 });
         let with_goal = problem.goal.by_object();
         all.extend(with_goal.iter().map(|(name, _)| Self::Tolerance { object: (*name).to_owned(), to_m: LOOSER_M }));
+        let upright = problem.objects.iter().filter(|object| problem.has_goal(&object.name));
+        all.extend(upright.map(|object| {
+            let to_deg = (LEAN_TIMES * object.max_tilt_deg()).clamp(LEAN_DEG, 180.0);
+            Self::Lean { object: object.name.clone(), to_deg }
+        }));
         all.push(Self::WiderBounds { by_m: WIDER_M });
         all.extend((0..problem.steers.len()).map(|index| Self::WithoutRule { index }));
         let loose: Vec<_> = loose_obstacles(problem).collect();
@@ -237,6 +252,13 @@ impl Relaxation {
             Self::Tolerance { object, to_m } => {
                 let goals = problem.goal.objects.iter_mut().filter(|goal| goal.object == *object);
                 goals.for_each(|goal| goal.tolerance_m = goal.tolerance_m.max(*to_m));
+            }
+            Self::Lean { object, to_deg } => {
+                let object = problem.objects.iter_mut().find(|other| other.name == *object)?;
+                if *to_deg <= object.max_tilt_deg() {
+                    return None;
+                }
+                object.max_tilt_deg = Some(*to_deg);
             }
             Self::WiderBounds { by_m } => {
                 let bounds = &mut problem.bounds;

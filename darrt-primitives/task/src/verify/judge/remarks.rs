@@ -19,8 +19,9 @@ const DRIVE_MORE_M: f64 = 1.0;
 const TURNING_RAD: f64 = std::f64::consts::TAU;
 /// While the base drives the hand may be so far from its centre, metres: what finds room in a doorway with the arm folded.
 const ARM_OUT_M: f64 = 0.8;
-/// Nearer to the limit than this a lean is told, radians.
+/// Nearer to the limit than this a lean is told, radians; where little is allowed, nearer than this share of it.
 const TILT_NEAR_RAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
+const TILT_NEAR_SHARE: f64 = 0.1;
 /// How far what is pushed may be from where it is thought to be, metres: three standard deviations of what a camera sees, of
 /// 10 mm each.
 const POSITION_ERROR_M: f64 = 0.03;
@@ -74,7 +75,9 @@ impl Judge<'_> {
             && let Some(movable) = self.world.movables.get(holding.object)
         {
             let limit = movable.spec.max_tilt_deg();
-            if limit < 180.0 && leaned_rad > limit.to_radians() - TILT_NEAR_RAD {
+            if limit < 180.0
+                && leaned_rad > limit.to_radians() - TILT_NEAR_RAD.min(TILT_NEAR_SHARE * limit.to_radians())
+            {
                 let name = &movable.spec.name;
                 let warning = Warning::new(WarningKind::Tilt, Some(step), &[name], leaned_rad.to_degrees(), limit);
                 self.remarks.warnings.push(warning);
