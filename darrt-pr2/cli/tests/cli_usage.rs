@@ -198,3 +198,50 @@ fn a_closed_pipe_and_a_full_disk_end_quietly_and_loudly() {
     let output = Command::new(env!("CARGO_BIN_EXE_darrt")).arg("problems").stdout(writer).output().unwrap();
     assert_eq!((code(&output), stderr(&output).as_str()), (0, ""));
 }
+
+#[test]
+fn a_plan_on_the_standard_output_is_alone_there_and_other_results_are_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = darrt(folder.path(), &["plan", "bowl", "-o", "-"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let plan: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(plan["format"], "darrt-plan");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "no file is written");
+    let message = refused(folder.path(), &["plan", "bowl", "-o", "a.json", "--record", "-"], 4);
+    assert!(message.contains("is the standard output"), "{message}");
+}
+
+#[test]
+fn what_a_person_wrote_is_not_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let problem = stdout(&darrt(folder.path(), &["problems", "--print", "bowl"]));
+    let robot = stdout(&darrt(folder.path(), &["robot", "list", "--print", "panda-arm"]));
+    for (name, text) in [("mine.toml", problem.as_str()), ("mine.robot", &robot), ("mine.urdf", "<robot name=\"a\"/>")] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        for arguments in [&["plan", "bowl", "-o", name][..], &["plan", "bowl", "--why", name]] {
+            let message = refused(folder.path(), arguments, 2);
+            assert!(message.contains(name) && message.contains("it would be lost"), "{message}");
+        }
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+    }
+}
+
+#[test]
+fn lines_fit_a_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in [
+        &["plan", "simple-plate", "--no-picture"][..],
+        &["check", "simple-plate.plan.json"],
+        &["problems"],
+        &["plan", "--help"],
+        &["explain", "--help"],
+        &["robot", "list"],
+    ] {
+        let output = darrt(folder.path(), arguments);
+        assert_eq!(code(&output), 0, "{arguments:?}: {}", stderr(&output));
+        for line in stdout(&output).lines() {
+            assert!(line.chars().count() <= 80, "{arguments:?}: {line}");
+        }
+    }
+}

@@ -42,7 +42,7 @@ fn list(options: &RobotListOptions, output: &mut Output) -> Result<Exit, Failure
         rows.add_row([robot.name.to_owned(), source.file.title]);
     }
     output.print(&table::finished(rows, []))?;
-    output.print(
+    output.tell(
         "\nPlan for one with `darrt plan PROBLEM --robot NAME`, copy one with `darrt robot list --print NAME > FILE`.",
     )?;
     Ok(Exit::Solved)
