@@ -9,11 +9,14 @@ use super::{any_count, positive};
 
 const WHY_NOT_EXAMPLES: &str = "\
 Examples:
-  darrt why-not plate3 --tool 0.9,0.1,0.85,0,1.2,0  may the hand be there, and where would the robot stand?
+  darrt why-not plate3 --tool 0.9,0.1,0.85,0,1.2,0
+      may the hand be there, and where would the robot stand?
   darrt why-not bowl --tool 0.6,0,0.9,0,1.57,0 --take bowl
-                                                    may the hand take the bowl so?
-  darrt why-not mine.toml --base 0.5,0.2,1.57       may the robot stand there, its arm as at the start?
-  darrt why-not mine.plan.json                      what is wrong with a plan, or what its beginning still lacks
+      may the hand take the bowl so?
+  darrt why-not mine.toml --base 0.5,0.2,1.57
+      may the robot stand there, its arm as at the start?
+  darrt why-not mine.plan.json
+      what is wrong with a plan, or what its beginning still lacks
 
 Metres and radians, as in problem and plan files; a rotation is roll, pitch, yaw about the fixed axes x, y, z.
 The other things are where the problem starts. A plan is planned on from the last step that is right.
