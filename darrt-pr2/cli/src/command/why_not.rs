@@ -148,7 +148,7 @@ fn words(idea: &Idea, answer: &WhyNot) -> String {
                     variant.turned_rad.to_degrees()
                 ),
             };
-            lines.push(format!("nearest that works: {far}"));
+            lines.push(format!("nearest found that works: {far}"));
             let [x, y, z, roll, pitch, yaw] = variant.tool;
             lines.push(format!("--tool {x:.4},{y:.4},{z:.4},{roll:.4},{pitch:.4},{yaw:.4}"));
             lines.push(standing(variant));
