@@ -216,7 +216,8 @@ fn what_a_person_wrote_is_not_written_over() {
     let folder = tempfile::tempdir().unwrap();
     let problem = stdout(&darrt(folder.path(), &["problems", "--print", "bowl"]));
     let robot = stdout(&darrt(folder.path(), &["robot", "list", "--print", "panda-arm"]));
-    for (name, text) in [("mine.toml", problem.as_str()), ("mine.robot", &robot), ("mine.urdf", "<robot name=\"a\"/>")] {
+    for (name, text) in [("mine.toml", problem.as_str()), ("mine.robot", &robot), ("mine.urdf", "<robot name=\"a\"/>")]
+    {
         let path = folder.path().join(name);
         std::fs::write(&path, text).unwrap();
         for arguments in [&["plan", "bowl", "-o", name][..], &["plan", "bowl", "--why", name]] {

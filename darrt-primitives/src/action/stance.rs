@@ -116,6 +116,8 @@ pub fn stance<M: Manipulator, T>(
     let (mut best, mut least) = (None, 0);
     let mut tries_left = usize::MAX;
     let mut blocked = None;
+    // How often the arm had no answer at the same base again.
+    let (mut lost, mut last) = (0, [f64::NAN; 3]);
     loop {
         if bases.is_empty() {
             let few = left.min(NEAREST_OF);
@@ -123,7 +125,7 @@ pub fn stance<M: Manipulator, T>(
             bases.sort_by(|a, b| space.distance(&here, b).total_cmp(&space.distance(&here, a)));
             left -= few;
         }
-        let Some(base) = bases.pop().filter(|_| tries_left > 0) else { break };
+        let Some(base) = bases.pop().filter(|_| tries_left > 0 && lost < ARM_TRIES) else { break };
         tries_left -= 1;
         let parked = Configuration { base, arm: from.robot.arm };
         if !m.robot().base().contains(&base)
@@ -133,7 +135,12 @@ pub fn stance<M: Manipulator, T>(
             continue;
         }
         for _ in 0..ARM_TRIES {
-            let Some(arm) = robot.inverse(&base, world_from_tool, rng) else { break };
+            let Some(arm) = robot.inverse(&base, world_from_tool, rng) else {
+                // Where all bases are one, the same is asked again; a numeric inverse takes longest where there is nothing.
+                lost += usize::from(base == last);
+                last = base;
+                break;
+            };
             let mut care = Care { kept: most, least };
             match accept(&Configuration { base, arm }, &mut care) {
                 Ok(found) if care.kept >= most => return Ok(found),
@@ -142,12 +149,12 @@ pub fn stance<M: Manipulator, T>(
                     // From here on only a better one will do.
                     (best, least) = (Some(found), care.kept + 1);
                 }
-                Err(Refused::Blocked(last)) => blocked = Some(last),
+                Err(Refused::Blocked(found)) => blocked = Some(found),
                 Err(Refused::Unreachable) => {}
             }
         }
     }
-    best.ok_or_else(|| blocked.map_or(Infeasible::Unreachable, |last| last.why(m)))
+    best.ok_or_else(|| blocked.map_or(Infeasible::Unreachable, |found| found.why(m)))
 }
 
 /// The robot at `base` with its arm at the end of a line that may have none.
