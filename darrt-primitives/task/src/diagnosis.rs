@@ -11,8 +11,8 @@
 //! | with which changes has it a plan? | [`explain`] |
 //! | why not in the way that a person has in mind? | [`why_not`] |
 //!
-//! All is bounded by counts and drawn from fixed seeds: the same problem has the same diagnosis. "None of 24" is what was
-//! counted; it is no proof.
+//! All is bounded by counts and drawn from fixed seeds, but for what the search itself has shown: that it came to the goal, what
+//! rules stopped, which doubts are left. "None of 24" is what was counted; it is no proof.
 
 use std::collections::BTreeMap;
 
