@@ -173,7 +173,10 @@ pub(crate) fn writable_page(path: &Path) -> Result<PathBuf, Failure> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     match ending.as_deref() {
         Some("html" | "htm") => writable(path),
-        _ => Err(Failure::input(format!("{}: a page ends in .html", path.display()))),
+        _ => {
+            let there = if path.exists() { ", and what is there would be lost" } else { "" };
+            Err(Failure::input(format!("{}: a page ends in .html{there}", path.display())))
+        }
     }
 }
 

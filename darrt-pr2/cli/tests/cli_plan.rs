@@ -270,7 +270,7 @@ fn what_is_read_is_never_written_over() {
         let (_, complaint) = run(folder, arguments, 2);
         assert!(complaint.contains("would be lost"), "{arguments:?}: {complaint}");
     }
-    let (_, complaint) = run(folder, &["execute", "old.json", "--page", "one", "--mcap", "one"], 2);
+    let (_, complaint) = run(folder, &["execute", "old.json", "--page", "one.html", "--mcap", "one.html"], 2);
     assert!(complaint.contains("cannot be both the page and the recording"), "{complaint}");
     assert_eq!(inputs.map(|name| std::fs::read(folder.join(name)).unwrap()), before);
 }
