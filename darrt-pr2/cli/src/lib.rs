@@ -69,11 +69,7 @@ pub fn run(program: &dyn Program, arguments: impl IntoIterator<Item = OsString>)
     match dispatch(program, &command) {
         Ok(exit) => exit.into(),
         Err(failure) => {
-            // One line is for programs as well, and stays one; an explanation is for people.
-            let is_explained = failure.message.contains('\n');
-            let message = format!("error: {}", printable(&failure.message));
-            let message = if is_explained { output::folded(&message) } else { message };
-            let _ = writeln!(std::io::stderr().lock(), "{message}");
+            let _ = writeln!(std::io::stderr().lock(), "error: {}", printable(&failure.message));
             failure.exit.into()
         }
     }
