@@ -109,7 +109,9 @@ pub(super) fn check(
         return Ok(());
     }
     let rounded = rounded::rounded(plan, &steps, &robot)?;
-    let judged = Judge::new(&rounded, facts, options, cancel)?.run();
+    // OPTIMIZATION: steps that stay as they are have been judged.
+    let same = steps.iter().filter(|timed| !timed.leaves_waypoints()).map(|timed| timed.site.step);
+    let judged = Judge::new(&rounded, facts, options, cancel)?.knowing(same).run();
     judged.map(|_| ()).map_err(|mut refusal| {
         refusal.message = format!("where the clock rounds corners: {}", refusal.message).into();
         refusal
@@ -144,7 +146,12 @@ fn check_limits(timed: &Timed<'_>, robot: &Robot, limits: &MotionLimits, joints:
     let mut begin_s = 0.0;
     for phase in timed.phases {
         let curve = Curve::new(phase, &timed.points);
-        let moving = curve.moving();
+        let arm = curve.moving().iter().filter_map(|coordinate| Some((*coordinate, coordinate.checked_sub(3)?)));
+        let arm: Vec<_> = arm
+            .filter_map(|(coordinate, joint)| {
+                Some((coordinate, format!("`{}`", robot.joint_name(joint)), joints.get(joint)?))
+            })
+            .collect();
         for (knot, t_s, jump) in curve.jumps(phase) {
             if jump > JUMP {
                 let at = phase.knots.get(knot).copied().unwrap_or(knot);
@@ -160,11 +167,8 @@ fn check_limits(timed: &Timed<'_>, robot: &Robot, limits: &MotionLimits, joints:
             let wheels = rates.over(&[0, 1])[0] / drive.velocity + rates.over(&[2])[0] / turn.velocity;
             let one = Bounds { velocity: 1.0, ..Bounds::NONE };
             within(timed, here_s, "the sum of the shares of the base's drive and turn", &[wheels, 0.0, 0.0], &one)?;
-            for coordinate in moving.iter().filter(|coordinate| **coordinate > 2) {
-                if let Some(bounds) = joints.get(coordinate - 3) {
-                    let name = format!("`{}`", robot.joint_name(coordinate - 3));
-                    within(timed, here_s, &name, &rates.over(&[*coordinate]), bounds)?;
-                }
+            for (coordinate, name, bounds) in &arm {
+                within(timed, here_s, name, &rates.over(&[*coordinate]), bounds)?;
             }
         }
         begin_s += phase.duration_s();

@@ -6,6 +6,8 @@ mod limits;
 mod moment;
 mod remarks;
 
+use std::collections::BTreeSet;
+
 use darrt_core::budget::Cancel;
 use darrt_primitives::contract::{HandUse, HandWay, ObjectRule};
 use nalgebra::Isometry3;
@@ -51,6 +53,8 @@ pub(super) struct Judge<'a> {
     links: Vec<Isometry3<f64>>,
     world_from_robot: Isometry3<f64>,
     waypoints: usize,
+    /// Numbers of the steps whose motion has been judged before.
+    known: BTreeSet<u32>,
 }
 
 /// One step under judgement.
@@ -130,7 +134,15 @@ impl<'a> Judge<'a> {
             links: Vec::new(),
             world_from_robot: Isometry3::identity(),
             waypoints: 0,
+            known: BTreeSet::new(),
         })
+    }
+
+    /// Numbers of steps that an accepted plan has too, with the same states before and after them: what lies between is not looked
+    /// at again, but by the plain judge.
+    pub(super) fn knowing(mut self, known: impl IntoIterator<Item = u32>) -> Self {
+        self.known.extend(known.into_iter().filter(|_| !self.options.is_plain));
+        self
     }
 
     /// The whole plan.
@@ -244,9 +256,15 @@ impl<'a> Judge<'a> {
         let states = self.states(site, step, here)?;
         let trial = self.trial(site, step, act, &states)?;
         let count = states.len() - 1;
-        for (index, pair) in states.windows(2).enumerate() {
-            if let [from, to] = pair {
-                self.segment(&trial, Place { index, count }, from, to)?;
+        // What is taken is held from then on as the hand is found to hold it.
+        let is_known = self.known.contains(&site.step) && site.contract.hand != HandUse::Takes;
+        if is_known {
+            self.pass(&states);
+        } else {
+            for (index, pair) in states.windows(2).enumerate() {
+                if let [from, to] = pair {
+                    self.segment(&trial, Place { index, count }, from, to)?;
+                }
             }
         }
         if let Some(near) = self.stage.too_near.take() {
@@ -261,6 +279,14 @@ impl<'a> Judge<'a> {
         self.finish(&trial, start, &end)?;
         self.remark(&trial, &states);
         Ok(end)
+    }
+
+    /// Goes to the last of these states without a look at anything; nothing is known of any pair there.
+    fn pass(&mut self, states: &[State]) {
+        let Some(last) = states.last() else { return };
+        self.world_from_robot = world_from_robot(&last.base);
+        self.robot.arm_link_poses(&last.joints, &mut self.links);
+        self.stage.forget();
     }
 
     /// The states at the waypoints, each within limits and bounds.

@@ -227,6 +227,11 @@ impl Stage {
         }
     }
 
+    /// Everything may be elsewhere than it was: at the next rules nothing is known of any pair.
+    pub(super) fn forget(&mut self) {
+        self.classes.clear();
+    }
+
     /// Decides anew how each pair is treated; the next check looks at all those that are treated or moved in another way now
     /// (what is taken or let go may jump by what a file may be off), and of the others at those that could be near.
     pub(super) fn set_rules(&mut self, rule: impl Fn(PairKind) -> Rule) {
