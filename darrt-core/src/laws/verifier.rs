@@ -33,7 +33,7 @@ pub const REFUSAL: &str =
 /// Measured clearances.
 pub const CLEARANCE: &str = "verifier.clearance: a clearance of an accepted plan is finite and not negative";
 /// Accepts.
-pub const ACCEPTS: &str = "verifier.accepts: of many ways that the search found free not all are refused at one of their steps, for the goal to be where each ends, nor are four plans to the goal of the problem all refused, nor all of ten ways at the step of one primitive";
+pub const ACCEPTS: &str = "verifier.accepts: of many ways that the search found free not all are refused at one of their steps, for the goal to be where each ends, nor are four plans to the goal of the problem all refused, nor all of six ways at the step of one primitive";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[REFUSES, STEADY, ITS_GOAL, REFUSAL, CLEARANCE, ACCEPTS];
