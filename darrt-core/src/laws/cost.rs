@@ -56,6 +56,8 @@ fn run<D: Domain>(m: &D, cost: &dyn ExecutionCost<D>, instance: &Instance<D>, fr
     };
     let step_s = cost.step_s();
     measure(FINITE, step_s).map_err(|broken| broken.of("step_s"))?;
+    // A step may be left where it begins; what that costs besides, if anything, is its own.
+    measure(FINITE, seconds(0.0)).map_err(|broken| broken.of("seconds").at(0.0))?;
     let mut before = 0.0;
     for until in CUTS {
         let found = seconds(until);

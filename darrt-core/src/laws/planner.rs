@@ -7,7 +7,6 @@ use crate::domain::Domain;
 use crate::goal::Goal;
 use crate::observe::accounts::Accounts;
 use crate::observe::{Event, Observer, Silent};
-use crate::partial::PartialState;
 use crate::plan::Plan;
 use crate::problem::Problem;
 use crate::search::{Darrt, Strategy};
@@ -97,13 +96,7 @@ fn judge_ways<D: Domain>(problem: &Problem<D>, ways: &[Plan<D>], seed: u64) -> R
     let m = problem.domain();
     let (mut last, mut at_steps) = (None, 0);
     for plan in ways {
-        let end = plan.end(m);
-        let mode = end.mode.clone();
-        let target = PartialState::of_state(m, &end);
-        let goal = crate::goal::Region::<D>::new(
-            Box::new(move |m, state| state.mode == mode && target.is_met(m, state)),
-            Box::new(|_, _| None),
-        );
+        let goal = super::verifier::each_primitive::its_end(m, plan);
         entering("verify");
         match problem.verifier().verify(m, problem.start(), &goal, plan) {
             Ok(_) => return judge(problem, &goal, plan, seed),

@@ -43,6 +43,8 @@ const DRAWS: u64 = 16;
 /// So many samples that name a component say whether they fill its space. That a twelfth stays empty by chance happens once in
 /// 10^10 times; if half of them come from a goal, once in 10^5.
 const ENOUGH: usize = 300;
+/// So few samples can still not all be at the same place.
+const FEW: usize = 40;
 /// So many samples are drawn at least to see whether they fill the space.
 const FILLING: u64 = 1024;
 /// And so many at most, if a component is named rarely.
@@ -160,7 +162,9 @@ fn fills<'a, S: ComponentSpace>(
 ) -> Result<(), Broken> {
     let found: Vec<_> = found.collect();
     if found.len() < ENOUGH {
-        return Ok(());
+        let is_one_place = found.len() >= FEW && found.iter().all(|q| Some(q) == found.first());
+        let text = || format!("{} samples at the same place", found.len());
+        return ensure(FILLS, !is_one_place, text, "at different ones: it can move");
     }
     let mut own = Vec::new();
     for i in 0..REFERENCE {

@@ -47,8 +47,7 @@ pub const SAMPLE_COVERS: &str = "space.sample-covers: samples come near every co
 /// Index coordinates: a lower bound.
 pub const COORDINATES: &str = "space.index-coordinates: over the coordinates of any groups, those of two configurations lie no farther apart than the overlay of these groups";
 /// Index coordinates: alike.
-pub const COORDINATES_ALIKE: &str =
-    "space.index-coordinates-alike: those of every configuration have the same groups in the same order";
+pub const COORDINATES_ALIKE: &str = "space.index-coordinates-alike: those of every configuration have the same groups in the same order, groups of the space";
 /// Overlay: all and none.
 pub const OVERLAY_ENDS: &str = "space.overlay-ends: overlay of all groups is the target, of no group the beginning";
 /// Overlay: groups are independent.
@@ -193,6 +192,9 @@ fn index_coordinates<S: ComponentSpace>(
     let (of_a, of_b) = (coordinates_of(space, a), coordinates_of(space, b));
     let groups = |all: &[(u32, f64)]| all.iter().map(|(group, _)| *group).collect::<Vec<_>>();
     equal(COORDINATES_ALIKE, &groups(&of_a), &groups(&of_b))?;
+    let stray = of_a.iter().find(|(group, _)| !space.groups().contains(*group));
+    let text = || format!("a coordinate of {stray:?}, the space has {:?}", space.groups());
+    ensure(COORDINATES_ALIKE, stray.is_none(), text, "one of its groups")?;
     let single = (0..32).map(GroupSet::only).filter(|group| space.groups().covers(*group));
     for named in single.chain([space.groups()]) {
         let pairs = of_a.iter().zip(&of_b).filter(|((group, _), _)| named.contains(*group));

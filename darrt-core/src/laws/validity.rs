@@ -69,7 +69,7 @@ pub const STRICT: &str = "validity.strict: of what the user's oracle calls free,
 pub const ORACLE_PREFIX: &str = "validity.oracle-prefix: no state of a free prefix is blocked for the user's oracle";
 
 /// Places.
-pub const BLAME_PLACE: &str = "validity.blame-place: the places of collisions are told, and are not all the origin";
+pub const BLAME_PLACE: &str = "validity.blame-place: the places of collisions are told, are not all the origin, and are near the robot or an object: no farther than ten times the room";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[

@@ -15,6 +15,7 @@ use super::feed::rng_of;
 use super::watch::{entering, watched};
 use super::{Broken, ensure, equal};
 
+pub(in crate::laws) mod each_primitive;
 mod forge;
 mod motions;
 mod steps;
@@ -32,7 +33,7 @@ pub const REFUSAL: &str =
 /// Measured clearances.
 pub const CLEARANCE: &str = "verifier.clearance: a clearance of an accepted plan is finite and not negative";
 /// Accepts.
-pub const ACCEPTS: &str = "verifier.accepts: of many ways that the search found free not all are refused at one of their steps, for the goal to be where each ends";
+pub const ACCEPTS: &str = "verifier.accepts: of many ways that the search found free not all are refused at one of their steps, for the goal to be where each ends, nor are four plans to the goal of the problem all refused, nor all of six ways at the step of one primitive";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[REFUSES, STEADY, ITS_GOAL, REFUSAL, CLEARANCE, ACCEPTS];
@@ -143,6 +144,9 @@ fn readable<D: Domain>(refusal: &Refusal, plan: &Plan<D>) -> Result<(), Broken> 
     ensure(REFUSAL, holds, text, "a reason, and a step that there is")
 }
 
+/// What shares of the way elsewhere a component of the start is aside.
+const SHARES: [f64; 3] = [0.3, 0.1, 0.03];
+
 /// The same plan for a goal that nothing satisfies, and for another start.
 fn other_problems<D: Domain>(judged: &Judged<'_, D>, plan: &Plan<D>, seed: u64) -> Result<(), Broken> {
     let m = judged.domain;
@@ -153,9 +157,20 @@ fn other_problems<D: Domain>(judged: &Judged<'_, D>, plan: &Plan<D>, seed: u64) 
     }
     let mut rng = rng_of(&(seed, "start"));
     let _: u64 = rng.random();
-    let other = super::feed::elsewhere(m, judged.start, &mut rng);
-    if other != *judged.start && judged.verifier.verify(m, &other, judged.goal, plan).is_ok() {
-        return Err(Broken::new(ITS_GOAL, format!("accepted for the start {other:?}"), "refused: it starts elsewhere"));
+    let far = super::feed::elsewhere(m, judged.start, &mut rng);
+    // All of it elsewhere, and one component a little aside.
+    let aside = super::feed::everything(m).into_iter().flat_map(|component| {
+        SHARES.map(|share| {
+            let mut near = judged.start.clone();
+            super::feed::drift(m, &mut near, &far, component, share);
+            near
+        })
+    });
+    for other in std::iter::once(far.clone()).chain(aside) {
+        if other != *judged.start && judged.verifier.verify(m, &other, judged.goal, plan).is_ok() {
+            let found = format!("accepted for the start {other:?}");
+            return Err(Broken::new(ITS_GOAL, found, "refused: it starts elsewhere"));
+        }
     }
     Ok(())
 }

@@ -89,8 +89,7 @@ pub const PAIRS: &str = "manipulator.pairs: a robot of more than two links names
 /// Travel is of use.
 pub const TRAVEL_TIGHT: &str = "manipulator.travel-tight: travel_m and what link_travel_m says are at most a hundred times as far as the farthest point of the robot travels";
 /// Strength.
-pub const STRENGTH: &str =
-    "manipulator.strength: grip, payload and push force are positive, and the pads have a length";
+pub const STRENGTH: &str = "manipulator.strength: grip, payload and push force are positive, the payload weighs at most a hundred times the grip, and the pads have a length";
 
 /// The palm.
 pub const HAND_FOLLOWS: &str = "manipulator.hand-follows: links of the hand are rigid to the tool";
@@ -119,6 +118,8 @@ pub const CLEAR: &str = "manipulator.clear: no link of the hand is between the t
 /// Variety of bases.
 pub const BASE_VARIED: &str =
     "manipulator.base-varied: base_for of a robot that drives does not always draw the same base";
+/// Variety of configurations.
+pub const INVERSE_VARIED: &str = "manipulator.inverse-varied: inverse of an arm of more than six joints does not always draw the same configuration for a pose";
 /// Steps.
 pub const NEAR_FINDS: &str =
     "manipulator.near-finds: of twelve short straight steps of the hand an arm of six joints or more can take one";
@@ -129,6 +130,7 @@ pub const LAWS: &[&str] = &[
     CENTRED,
     CLEAR,
     BASE_VARIED,
+    INVERSE_VARIED,
     NEAR_FINDS,
     NAN,
     MAY_NOT_REACH,

@@ -33,6 +33,8 @@ const HALVINGS: u32 = 14;
 const BLAMES: usize = 3;
 /// So many collisions of several pairs of bodies do not all happen at the origin.
 const MANY_PLACES: usize = 6;
+/// How far from all of them, in rooms, bodies do not meet.
+const MOST_ROOMS: f64 = 10.0;
 /// How many states are asked again in which objects are in the way.
 const MET: usize = 6;
 /// How often something is put elsewhere to see whether it was to blame.
@@ -249,6 +251,7 @@ impl<D: Domain> Trial<'_, D> {
         let names: Vec<_> = objects.iter().map(|id| self.m.component_name(*id).into_owned()).collect();
         let robot = self.m.component_name(ComponentId::Robot).into_owned();
         let mut seen = 0;
+        let room_m = extent(states.iter().flat_map(|state| points(self.m, state)));
         let (mut places, mut is_told, mut pairs) = (0, false, BTreeSet::new());
         for state in states {
             let Err(blame) = self.judge(state, &D::Contacts::default()) else { continue };
@@ -267,6 +270,7 @@ impl<D: Domain> Trial<'_, D> {
             let text = || blame.to_string();
             ensure(BLAME_KIND, fits, text, "a kind that fits the names of the two bodies")?;
             if is_collision(&blame) {
+                self.is_near(state, &blame, room_m)?;
                 places += 1;
                 is_told |= blame.place != [0.0; 3];
                 pairs.insert(pair(&blame));
@@ -280,6 +284,16 @@ impl<D: Domain> Trial<'_, D> {
         let is_open = places < MANY_PLACES || pairs.len() < 2;
         let text = || format!("{places} of {places} collisions at [0.0, 0.0, 0.0]");
         ensure(BLAME_PLACE, is_told || is_open, text, "where they meet")
+    }
+
+    /// A collision is where bodies are, if the domain tells where they are.
+    fn is_near(&self, state: &State<D>, blame: &Blame, room_m: f64) -> Result<(), Broken> {
+        let apart_m = |p: &[f64; 3]| extent([*p, blame.place].into_iter());
+        let nearest_m = points(self.m, state).iter().map(apart_m).fold(f64::INFINITY, f64::min);
+        let holds = room_m <= 0.0 || nearest_m <= MOST_ROOMS * room_m;
+        let text = || format!("{blame}, {nearest_m:?} m from robot and objects");
+        let against = format!("where they meet, in a room of {room_m:?} m");
+        ensure(BLAME_PLACE, holds, text, "near them").map_err(|broken| Broken { right: against.into(), ..broken })
     }
 
     /// Whoever the kind names is to blame: the same two bodies do not meet wherever it is put.
@@ -348,6 +362,23 @@ impl<D: Domain> Trial<'_, D> {
         }
         Ok(())
     }
+}
+
+/// Where the domain says that robot and objects are; the origin for one that does not say.
+fn points<D: Domain>(m: &D, state: &State<D>) -> Vec<[f64; 3]> {
+    let objects = state.objects.iter().enumerate().map(|(i, at)| m.object_point(ObjectId::new(i), at));
+    std::iter::once(m.working_point(&state.robot)).chain(objects).collect()
+}
+
+/// Metres from one corner to the other of the box around points.
+fn extent(points: impl Iterator<Item = [f64; 3]>) -> f64 {
+    let nothing = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    let (low, high) = points.fold(nothing, |(low, high), p| {
+        let all = [0, 1, 2].map(|i: usize| (low[i].min(p[i]), high[i].max(p[i])));
+        (all.map(|(low, _)| low), all.map(|(_, high)| high))
+    });
+    let metres = [0, 1, 2].map(|i: usize| (high[i] - low[i]).max(0.0));
+    metres.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 fn is_collision(blame: &Blame) -> bool {

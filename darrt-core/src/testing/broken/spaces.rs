@@ -167,14 +167,24 @@ fn index_coordinates() -> Vec<Case> {
             name: "one coordinate more",
             wrong: "marks the heading only where there is one",
             law: COORDINATES_ALIKE,
-            broken: || growing(|q| if q[1] > 0.0 { 2 } else { 1 }),
-            honest: || growing(|_| 2),
+            broken: || growing(|q| if q[1] > 0.0 { 2 } else { 1 }, 0),
+            honest: || growing(|_| 2, 0),
+        },
+        Case {
+            name: "groups counted from one",
+            wrong: "marks its only group as the second",
+            law: COORDINATES_ALIKE,
+            broken: || growing(|_| 2, 1),
+            honest: || growing(|_| 2, 0),
         },
     ]
 }
 
-/// The honest space with as many index coordinates as this says.
-struct Marked(fn(&Config) -> usize);
+/// The honest space with as many index coordinates as this says, of this group.
+struct Marked {
+    count: fn(&Config) -> usize,
+    group: u32,
+}
 
 impl ComponentSpace for Marked {
     type Config = Config;
@@ -200,13 +210,13 @@ impl ComponentSpace for Marked {
     }
 
     fn index_coordinates(&self, q: &Config, mark: &mut dyn FnMut(u32, f64)) {
-        (0..).zip(bench::index_coordinates(q)).take((self.0)(q)).for_each(|(_, x): (u32, f64)| mark(0, x));
+        bench::index_coordinates(q).into_iter().take((self.count)(q)).for_each(|x| mark(self.group, x));
     }
 }
 
-fn growing(count: fn(&Config) -> usize) -> Result<(), Broken> {
+fn growing(count: fn(&Config) -> usize, group: u32) -> Result<(), Broken> {
     let [a, b, c] = TRIPLE;
-    check_component_space(&Marked(count), &SpaceClaims::default(), [&a, &b, &c], [0.25, 0.6], 1)
+    check_component_space(&Marked { count, group }, &SpaceClaims::default(), [&a, &b, &c], [0.25, 0.6], 1)
 }
 
 fn overlays() -> Vec<Case> {

@@ -6,6 +6,10 @@ use darrt_core::laws::{Broken, ensure, equal};
 
 use super::{COUNTS, HAND, LIMITS, LINKS, PAIRS, STRENGTH};
 use crate::manipulator::{JointVector, Manipulator};
+use crate::push::GRAVITY;
+
+/// A payload weighs at most so many times the force of the grip.
+const MOST_HELD: f64 = 100.0;
 
 pub(super) fn check<M: Manipulator>(robot: &M) -> Result<(), Broken> {
     let count = robot.limits().len();
@@ -54,7 +58,11 @@ fn strength<M: Manipulator>(robot: &M) -> Result<(), Broken> {
     for (name, value) in all {
         ensure(STRENGTH, value > 0.0, || format!("{name} {value:?}"), "positive, or infinite")?;
     }
-    Ok(())
+    // No friction holds more, and no hook or rim so much more: one of the two is in another unit.
+    let (grip_n, payload_kg) = (hand.grip_force_n(), robot.payload_kg());
+    let fits = payload_kg.is_infinite() || GRAVITY * payload_kg <= MOST_HELD * grip_n;
+    let text = || format!("payload {payload_kg:?} kg with a grip of {grip_n:?} N");
+    ensure(STRENGTH, fits, text, "a weight of at most a hundred times the grip")
 }
 
 fn hand<M: Manipulator>(robot: &M) -> Result<(), Broken> {

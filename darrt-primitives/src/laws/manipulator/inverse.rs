@@ -4,13 +4,18 @@ use darrt_core::laws::{Broken, at_most, ensure, equal};
 use nalgebra::{Isometry3, Translation3};
 
 use super::{
-    BASE_FOR, BASE_VARIED, INVERSE_LIMITS, INVERSE_POSE, MAY_REACH, NEAR_SELF, PURE, SEEDED, Trial, same_pose,
+    BASE_FOR, BASE_VARIED, INVERSE_LIMITS, INVERSE_POSE, INVERSE_VARIED, MAY_REACH, NEAR_SELF, PURE, SEEDED, Trial,
+    same_pose,
 };
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mobile_arm_space::difference;
 
 /// How many solutions are drawn for each pose.
 const DRAWS: u64 = 4;
+/// So many joints reach a pose in a few ways only.
+const DETERMINED: usize = 6;
+/// How many solutions are drawn until they are the same for ever.
+const VARIED_DRAWS: u64 = 24;
 /// And how many bases.
 const BASES: u64 = 24;
 
@@ -26,7 +31,28 @@ impl<M: Manipulator> Trial<'_, M> {
             self.near_itself(q, &tool)?;
             self.near_pure(q, &tool, other)?;
         }
-        Ok(())
+        self.inverse_varied()
+    }
+
+    /// Redundancy is drawn: for two poses, many draws are not the same in both.
+    fn inverse_varied(&self) -> Result<(), Broken> {
+        let movable = self.robot.limits().iter().filter(|limit| limit.upper > limit.lower).count();
+        if movable <= DETERMINED {
+            return Ok(());
+        }
+        let is_varied = |q: &Configuration<M::Joints>| {
+            let tool = self.robot.world_from_tool(q);
+            let mut found = (0..VARIED_DRAWS).filter_map(|i| self.robot.inverse(&q.base, &tool, &mut self.rng(i)));
+            let Some(first) = found.next() else { return true };
+            let mut count = 1;
+            found.any(|other| {
+                count += 1;
+                other != first
+            }) || count < VARIED_DRAWS / 2
+        };
+        let holds = is_varied(self.a) || is_varied(self.b);
+        let text = || format!("the same arm configuration in all of {VARIED_DRAWS} draws, for both poses");
+        ensure(INVERSE_VARIED, holds, text, "different ones: redundancy is drawn")
     }
 
     pub(super) fn reaches(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> Result<(), Broken> {

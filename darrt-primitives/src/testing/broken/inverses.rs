@@ -11,8 +11,8 @@ use super::robots::{case, robot, robot_that};
 use super::{Case, unusable};
 use crate::kinematics::JointLimit;
 use crate::laws::manipulator::{
-    BASE_FINDS, BASE_FOR, INVERSE_FINDS, INVERSE_LIMITS, INVERSE_POSE, LINE_BOW, LINE_STEP, MAY_REACH, NEAR_SELF, PURE,
-    SEEDED,
+    BASE_FINDS, BASE_FOR, INVERSE_FINDS, INVERSE_LIMITS, INVERSE_POSE, INVERSE_VARIED, LINE_BOW, LINE_STEP, MAY_REACH,
+    NEAR_SELF, PURE, SEEDED,
 };
 use crate::laws::{ManipulatorClaims, ReachClaims, check_reaches};
 use crate::testing::gantry::{Configuration, Gantry, Joints, TOOL_M, motion};
@@ -87,6 +87,9 @@ fn draws() -> Vec<Case> {
                     motion::solve(base, tool, f64::from(CALLS.fetch_add(1, Ordering::Relaxed) % 5) * 0.1)
                 };
             })
+        }),
+        case("a posture of its own", "the redundant joint is always in the middle", INVERSE_VARIED, || {
+            robot(|robot| robot.inverse = |base, tool, _| motion::solve(base, tool, 0.25))
         }),
         case("warm start", "a search for a near configuration begins where the last one ended", PURE, || {
             robot(|robot| {

@@ -93,6 +93,12 @@ fn left_out() -> Vec<Case> {
         case("a grip of no number", "a force divided by a stroke of 0", STRENGTH, || {
             robot(|robot| robot.hand.grip_force_n = f64::NAN)
         }),
+        case("a grip in kilonewton", "the data sheet of a press", STRENGTH, || {
+            robot(|robot| {
+                robot.hand.grip_force_n = 0.06;
+                robot.payload_kg = 2.0;
+            })
+        }),
         case("pads of no length", "the length of the pads was left at 0", STRENGTH, || {
             robot(|robot| robot.hand.pad_length_m = 0.0)
         }),

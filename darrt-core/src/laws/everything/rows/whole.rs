@@ -1,5 +1,6 @@
 //! The validity on motions that the primitives propose, the oracle, and the planner with verifier and all.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use rand::RngExt;
@@ -13,6 +14,7 @@ use crate::laws::feed::elsewhere;
 use crate::laws::planner::Heart;
 use crate::laws::watch::{drawing, entering};
 use crate::laws::{Broken, check_by_oracle, check_planner, check_validity, planner, validity, verifier};
+use crate::observe::{Event, Observer};
 use crate::partial::PartialState;
 use crate::random::{Purpose, stream};
 use crate::solve::{SolveOptions, solve};
@@ -150,6 +152,24 @@ fn the_oracle<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
     Some(Plan::new("validity by oracle", 4, world.subjects.effort.cases / 8 + 1, case))
 }
 
+/// So many plans of a search are not all refused.
+const MANY_REFUSED: u64 = 4;
+/// How many times as many iterations as the planner is checked with each attempt of that search has.
+const ATTEMPT: u64 = 3;
+
+/// Counts the plans that the verifier refuses.
+struct Refused {
+    heart: Heart,
+    count: u64,
+}
+
+impl Observer for Refused {
+    fn on_event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        self.count += u64::from(matches!(event, Event::Refused { .. }));
+        self.heart.on_event(event)
+    }
+}
+
 fn the_planner<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
     let iterations = world.subjects.effort.iterations;
     if iterations == 0 {
@@ -171,12 +191,20 @@ fn the_planner<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
         let (Some(Ok(problem)), Some(strategy)) = (world.problem(), strategy) else { return Ok(()) };
         let iterations = Some(GROWTH * world.subjects.effort.iterations);
         let budget = Budget { iterations, ..Budget::default() };
-        let options = SolveOptions { seed: world.seed, budget, restart_iterations: None, threads: 1 };
-        let outcome = solve(&problem, &strategy, &options, &mut Heart::of_this_thread());
+        // A plan that was refused keeps others from being found: the search begins anew, several times.
+        let restart = Some(ATTEMPT * world.subjects.effort.iterations);
+        let options = SolveOptions { seed: world.seed, budget, restart_iterations: restart, threads: 1 };
+        let mut plans = Refused { heart: Heart::of_this_thread(), count: 0 };
+        let outcome = solve(&problem, &strategy, &options, &mut plans);
         if let (None, Some(refusal)) = (&outcome.solution, &outcome.last_refusal) {
+            if plans.count >= MANY_REFUSED {
+                let found = format!("{} plans to the goal refused, the last one because {refusal}", plans.count);
+                return Err(Broken::new(verifier::ACCEPTS, found, "one accepted"));
+            }
             row.warn(format!("the verifier refused every plan that was found, the last one because {refusal}"));
         }
-        Ok(())
+        let iterations = ATTEMPT * world.subjects.effort.iterations;
+        verifier::each_primitive::check(&problem, &strategy, world.seed, iterations)
     };
     let laws = planner::LAWS.len() + verifier::LAWS.len();
     let cases = (world.subjects.effort.cases / 32).max(1);

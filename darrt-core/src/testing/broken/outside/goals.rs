@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::super::bench::{Bench, cart_at, robot_at, sample};
+use super::super::bench::{Bench, cart, cart_at, robot_at, sample};
 use super::super::motions::random_state;
 use super::super::samplers::Dice;
 use super::super::{Case, inputs, seed};
@@ -89,6 +89,15 @@ fn samplers() -> Vec<Case> {
             sampler(&Dice(|_, rng| {
                 let [x, heading] = sample(rng);
                 somebody(rng, [x / 2.0, heading])
+            }))
+        }),
+        case("only where it should end", "the robot is named by the goal alone", FILLS, || {
+            sampler(&Dice(|m, rng| {
+                if rng.random_bool(0.1) {
+                    return robot_at([3.5, 0.0]);
+                }
+                let id = if rng.random_bool(0.5) { cart() } else { second() };
+                PartialState::anywhere(m).with_object(id, sample(rng))
             }))
         }),
         case("ahead only", "never asks anybody to look back", FILLS, || {

@@ -252,6 +252,12 @@ fn rules() -> Vec<Case> {
             };
             rule(Careful { rule: Rule { check, ..CAREFUL.rule }, ..CAREFUL })
         }),
+        case("elsewhere", "the place of a blame is in millimetres", BLAME_PLACE, || {
+            let check = |wall, state: &State<Bench>, contacts| {
+                spaced(wall, state, contacts).map_err(|blame| Blame { place: blame.place.map(|x| 1e3 * x), ..blame })
+            };
+            rule(Careful { rule: Rule { check, ..CAREFUL.rule }, ..CAREFUL })
+        }),
         case("something else", "every rule is called another rule", BLAME_KIND, || {
             let check = |wall, state: &State<Bench>, contacts| {
                 spaced(wall, state, contacts).map_err(|blame| Blame { kind: BlockKind::Other, ..blame })

@@ -235,6 +235,13 @@ fn steady() -> Vec<Case> {
                 CALLS.get() % 2 == 1 && honest(court)
             })
         }),
+        case("a start with some slack", "the robot may start within a hand's breadth", ITS_GOAL, || {
+            judged(|court| {
+                let aside_m = (court.plan.start().robot[0] - court.start.robot[0]).abs();
+                let start = court.plan.start();
+                aside_m < 0.1 && honest(&Court { start, m: court.m, goal: court.goal, plan: court.plan })
+            })
+        }),
         case("a goal of its own", "judges by the goal that it was made with", ITS_GOAL, || {
             judged(|court| {
                 let own = Region::<Bench>::new(

@@ -197,6 +197,9 @@ fn costs() -> Vec<Case> {
                 ..FAIR
             })
         }),
+        case("speed at the start", "the part that is done divides, and where a motion begins it is 0", FINITE, || {
+            cost(&Price { seconds: |i, until| 0.1 + i.motion.length() * until * until / until, ..FAIR })
+        }),
         case("signed guess", "the way between two places without its absolute value", FINITE, || {
             cost(&Price { between: |metres| metres, ..FAIR })
         }),

@@ -3,18 +3,38 @@
 use super::super::bench::{Act, Bench, Config, Propagate, Rule, cart, robot_at, state};
 use super::super::motions::{go, instance};
 use super::super::{Case, seed};
-use crate::goal::Region;
+use crate::goal::{Goal, Region};
 use crate::laws::everything::Effort;
 use crate::laws::planner::PROBLEM;
 use crate::laws::primitive::{FEASIBLE, FREE};
 use crate::laws::validity::HELD;
+use crate::laws::verifier::ACCEPTS;
 use crate::laws::{Broken, Subjects, ValidityClaims, check_everything};
 use crate::motion::{Instance, Waypoints};
+use crate::plan::Plan;
 use crate::primitive::{Infeasible, Primitive};
 use crate::state::{ComponentSet, State};
 use crate::testing::puck::{Clearance, Obstacle, Outline, PuckWorld, Setup};
 use crate::validity::{Blame, BlockKind, FreePrefix, Validity};
-use crate::verify::Replay;
+use crate::verify::{Refusal, Replay, Verified, Verifier};
+
+/// Refuses whatever ends in its goal.
+struct Contrary;
+
+impl Verifier<Bench> for Contrary {
+    fn verify(
+        &self,
+        m: &Bench,
+        start: &State<Bench>,
+        goal: &dyn Goal<Bench>,
+        plan: &Plan<Bench>,
+    ) -> Result<Verified, Refusal> {
+        if plan.end(m).robot[0] < 0.1 {
+            return Err(Refusal { step: None, at: 0.0, reason: "it ends in the goal".to_owned() });
+        }
+        Replay::new(Rule::default(), 1e-2).verify(m, start, goal, plan)
+    }
+}
 
 const GO: Act = Act {
     useful: |m, from, to| to.are_objects_met(m, from) && !to.is_robot_met(m, from),
@@ -34,6 +54,10 @@ fn check(start: State<Bench>, act: Act) -> Result<(), Broken> {
 }
 
 fn check_with(cases: u64, start: State<Bench>, act: Act) -> Result<(), Broken> {
+    check_by(Replay::new(Rule::default(), 1e-2), cases, start, act)
+}
+
+fn check_by(verifier: impl Verifier<Bench> + 'static, cases: u64, start: State<Bench>, act: Act) -> Result<(), Broken> {
     let rule = Rule::default();
     let primitives: Vec<Box<dyn Primitive<Bench>>> = vec![Box::new(act)];
     let goal = Region::<Bench>::new(
@@ -41,16 +65,14 @@ fn check_with(cases: u64, start: State<Bench>, act: Act) -> Result<(), Broken> {
         Box::new(|_, _| Some(robot_at([0.05, 0.0]))),
     );
     let subjects =
-        Subjects::new(start).goal(goal).primitives(primitives).validity(rule).verifier(Replay::new(rule, 1e-2)).effort(
-            Effort {
-                cases,
-                calls: 8192,
-                iterations: if cases > 4 { 0 } else { 20 },
-                apart_ms: 0,
-                seed: seed(),
-                ..Effort::default()
-            },
-        );
+        Subjects::new(start).goal(goal).primitives(primitives).validity(rule).verifier(verifier).effort(Effort {
+            cases,
+            calls: 8192,
+            iterations: if cases > 4 { 0 } else { 20 },
+            apart_ms: 0,
+            seed: seed(),
+            ..Effort::default()
+        });
     match check_everything(Bench::default(), subjects) {
         Ok(_) => Ok(()),
         Err(report) => report.broken().next().map_or(Ok(()), |broken| Err(broken.clone())),
@@ -114,6 +136,9 @@ pub(super) fn cases() -> Vec<Case> {
                 way.map(|way| vec![way]).ok_or(Infeasible::Unreachable)
             };
             check_with(512, state([0.5, 0.1]), Act { propagate, ..GO })
+        }),
+        case("refuses what ends well", "the sign of how the goal is met", ACCEPTS, || {
+            check_by(Contrary, 4, state([0.5, 0.1]), GO)
         }),
         Case {
             name: "held is fine",
