@@ -53,8 +53,8 @@ pub struct Execution<'a> {
 /// struct Afresh(Registry<FileRobot>);
 ///
 /// impl Replan for Afresh {
-///     fn replan(&self, problem: &ProblemFile, old: &PlanFile) -> Option<PlanFile> {
-///         let request = PlanRequest::new(problem.clone(), old.planner.seed);
+///     fn replan(&self, problem: &ProblemFile, _old: &PlanFile) -> Option<PlanFile> {
+///         let request = PlanRequest::new(problem.clone(), 0);
 ///         plan(&self.0, &request, &Cancel::new(), &mut Silent).ok()?.plan
 ///     }
 /// }

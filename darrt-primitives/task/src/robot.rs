@@ -72,10 +72,10 @@ use crate::robot_file::RobotFileError;
 ///     fn posture(&self, name: &str) -> Option<Joints> { self.0.posture(name) }
 ///     fn joint_values(&self, q: &Configuration<Joints>, gap_m: f64) -> Vec<f64> { self.0.joint_values(q, gap_m) }
 /// }
-/// let settings = Settings { model: Some("panda-arm".to_owned()), ..Settings::default() };
+/// let settings: Settings = toml::from_str("model = \"panda-arm\"\nbase = [0, 0, 0]")?;
 /// let (robot, start) = Closed::build(&settings)?;
 /// assert_eq!(robot.limits().len(), AsRef::<[f64]>::as_ref(&start).len());
-/// # Ok::<(), RobotError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait TaskRobot: Manipulator + Sized {
     /// The names by which `model` in problem files may call it.

@@ -32,7 +32,12 @@ fn the_goal_holds_at_the_end() {
         let goal = &mut plan.problem.goal.objects[0];
         (goal.on, goal.at) = (Some("side table".to_owned()), Some([-2.14, -1.09]));
     });
-    refused(plans::push(), 0, K::Goal, |plan| plan.problem.goal.objects[0].state = Some(GoalState::Held));
+    // Where it is, but in the hand.
+    refused(plans::push(), 0, K::Goal, |plan| {
+        let goal = &mut plan.problem.goal.objects[0];
+        let [x, y] = goal.at.take().unwrap();
+        (goal.on, goal.position, goal.state) = (None, Some([x, y, 0.76]), Some(GoalState::Held));
+    });
     refused(plans::carry(), 0, K::Goal, |plan| plan.steps.truncate(5));
     refused(plans::push(), 0, K::Goal, |plan| plan.steps.clear());
     let region = |max: f64| {
