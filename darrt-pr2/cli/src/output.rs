@@ -171,13 +171,11 @@ fn source_kind(place: &Path) -> Option<&'static str> {
 /// [`Exit::BadInput`] for another ending than `.html` or `.htm`, else as [`writable`].
 pub(crate) fn writable_page(path: &Path) -> Result<PathBuf, Failure> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    match ending.as_deref() {
-        Some("html" | "htm") => writable(path),
-        _ => {
-            let there = if path.exists() { ", and what is there would be lost" } else { "" };
-            Err(Failure::input(format!("{}: a page ends in .html{there}", path.display())))
-        }
+    if matches!(ending.as_deref(), Some("html" | "htm")) {
+        return writable(path);
     }
+    let there = if path.exists() { ", and what is there would be lost" } else { "" };
+    Err(Failure::input(format!("{}: a page ends in .html{there}", path.display())))
 }
 
 /// Do both name the same file, whether it is there already or not?

@@ -294,7 +294,7 @@ fn improvement(result: &PlanResult, story: &Story, robot: &RobotFacts) -> Result
     let [from, to] = [&before, story]
         .map(|story| story.steps.iter().fold(Travel::default(), |sum, step| sum.plus(&Travel::of(story, step))));
     let steps = [before.steps.len(), story.steps.len()];
-    if seconds > found_s {
+    if seconds > *found_s {
         // What was found is shorter because it was not looked at whether all of it is free.
         return Ok(Some(format!(
             "improved: found with {} of {found_s:.0} s, in some of which something was in the way; free in {} of {seconds:.0} s, \
