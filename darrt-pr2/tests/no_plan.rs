@@ -109,7 +109,7 @@ impl Case {
         match plan(&registry, &request, &Cancel::new(), &mut Silent) {
             Ok(result) => {
                 assert!(result.plan.is_none(), "has a plan");
-                diagnose(&registry, &request, &result).unwrap()
+                diagnose(&registry, &request, &result, &Cancel::new()).unwrap()
             }
             Err(error) => Diagnosis::of_error("case", &error).unwrap_or_else(|| panic!("{error}")),
         }
@@ -295,7 +295,7 @@ fn side_table_too_high_for_the_arm() {
     // So much lower it is reached.
     case.world = case.world.replace("1.975", &format!("{}", 1.975 - beyond_m - 0.3));
     let request = PlanRequest::new(case.problem(), 0);
-    assert_eq!(causes(&Registry::<Pr2>::new(), &request).unwrap(), []);
+    assert_eq!(causes(&Registry::<Pr2>::new(), &request, &Cancel::new()).unwrap(), []);
 }
 
 #[test]

@@ -122,6 +122,11 @@ pub(crate) fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> 
         (false, true) => "beside what is doubted nothing",
         (false, false) => "nothing",
     };
+    if diagnosis.is_cut_short {
+        let why =
+            "what keeps a plan away was not found out in as long as the search took; `darrt explain` takes its time";
+        return vec![format!("{why}. {limit} may help{progress}")];
+    }
     let by_itself = if is_doubted { "" } else { ": each object can be taken and brought to its goal by itself" };
     let or_allow = if is_steered { ", or to allow more in `steer`," } else { "" };
     let would_help = format!("it would help, as far as a few tries tell: {}", remedies.join("; or "));
@@ -183,6 +188,7 @@ mod tests {
             causes,
             remedies: Vec::new(),
             outcome,
+            is_cut_short: false,
             nearest_to_goal_m: Some(1.25),
         }
     }

@@ -84,8 +84,8 @@ pub(crate) fn folded(text: &str) -> String {
     text.split('\n').map(fold).collect::<Vec<_>>().join("\n")
 }
 
-/// Stands for a space that must stay one; texts of ours do not have it.
-const GLUE: char = '\u{2060}';
+/// Stands for a space at which no line is broken, and is as wide as one.
+const GLUE: char = '\u{a0}';
 
 /// How far a line is indented where it goes on.
 fn hang(line: &str) -> usize {

@@ -45,7 +45,7 @@ fn a_plan_never_overwrites_its_problem() {
     let folder = tempfile::tempdir().unwrap();
     solved_problem(folder.path());
     let (_, complaint) = run(folder.path(), &["plan", "easy.toml", "-o", "./easy.toml"], 2);
-    assert!(complaint.contains("easy.toml: is the problem file itself"), "{complaint}");
+    assert!(complaint.contains("easy.toml: is there already and is a problem, it would be lost"), "{complaint}");
     assert_eq!(files(folder.path()), ["easy.toml"]);
 }
 

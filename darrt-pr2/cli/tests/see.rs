@@ -179,7 +179,7 @@ fn bad_recordings_and_options_are_refused_with_the_place() {
     assert!(refused(&recording).contains("version 2"));
     for (arguments, words) in [
         (vec!["show", "caged.search.json", "-o", "tree.svg"], ".graphml"),
-        (vec!["show", "caged.search.json", "--attempt", "7", "-o", "tree.dot"], "there are 0"),
+        (vec!["show", "caged.search.json", "--attempt", "7", "-o", "tree.dot"], "its attempts: 0"),
         (vec!["show", "caged.toml", "--iteration", "7"], "recorded searches"),
         (vec!["plan", "caged.search.json"], "recorded search"),
         (vec!["check", "caged.search.json"], "recorded search"),

@@ -16,7 +16,7 @@
 
 use std::collections::BTreeMap;
 
-use darrt_core::budget::Stop;
+use darrt_core::budget::{Cancel, Stop};
 use darrt_core::goal::Goal as _;
 use darrt_core::random::{Purpose, stream};
 use darrt_core::state::ObjectId;
@@ -30,7 +30,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::doubts::Outlook;
-use crate::planning::{PlanRequest, PlanResult, STEER, prepare};
+use crate::planning::{PlanRequest, PlanResult, STEER, prepare_unless};
 use crate::planning_error::PlanningError;
 use crate::problem_file::Object;
 use crate::registry::Registry;
@@ -107,6 +107,8 @@ pub struct Diagnosis {
     pub remedies: Vec<Relaxation>,
     /// Would a longer search help?
     pub outcome: Outcome,
+    /// Was the time over before the causes were found out?
+    pub is_cut_short: bool,
     /// Metres from the goal, by the planner's distance, of the nearest state; `null` if there is none.
     pub nearest_to_goal_m: Option<f64>,
 }
@@ -141,12 +143,14 @@ impl Diagnosis {
             causes: vec![cause],
             remedies: Vec::new(),
             outcome: Outcome::Hopeless,
+            is_cut_short: false,
             nearest_to_goal_m: None,
         })
     }
 }
 
-/// Finds out why a search found no plan.
+/// Finds out why a search found no plan, until `cancel` says that nobody waits any longer: then no causes are given but what the
+/// search itself has shown.
 ///
 /// # Errors
 /// As [`prepare`].
@@ -154,11 +158,17 @@ pub fn diagnose<M: TaskRobot>(
     registry: &Registry<M>,
     request: &PlanRequest,
     result: &PlanResult,
+    cancel: &Cancel,
 ) -> Result<Diagnosis, PlanningError> {
     let mut causes = match &result.last_refusal {
         Some(reason) => vec![Cause::Refused { reason: reason.clone() }],
-        None => causes(registry, request)?,
+        None => causes(registry, request, cancel)?,
     };
+    let is_cut_short = result.last_refusal.is_none() && cancel.is_cancelled();
+    if is_cut_short {
+        // What few tries did not find may be there.
+        causes.clear();
+    }
     if result.nearest_to_goal < AT_GOAL_M {
         // The search has been there, so a hand comes there.
         causes.retain(|cause| !cause.is_about_arriving());
@@ -179,7 +189,7 @@ pub fn diagnose<M: TaskRobot>(
         () if result.iterations < FEW => Outcome::TooShort,
         () => Outcome::MayBeFound,
     };
-    let remedies = if is_hopeless { remedies(registry, request, &causes) } else { Vec::new() };
+    let remedies = if is_hopeless { remedies(registry, request, &causes, cancel) } else { Vec::new() };
     let ended = match result.stop {
         Stop::TimeLimit => Ended::TimeLimit,
         Stop::NodeLimit => Ended::NodeLimit,
@@ -193,28 +203,42 @@ pub fn diagnose<M: TaskRobot>(
         causes,
         remedies,
         outcome,
+        is_cut_short,
         nearest_to_goal_m: Some(result.nearest_to_goal).filter(|metres| metres.is_finite()),
     })
 }
 
 /// Changes after which nothing decisive is found.
-fn remedies<M: TaskRobot>(registry: &Registry<M>, request: &PlanRequest, found: &[Cause]) -> Vec<Relaxation> {
+fn remedies<M: TaskRobot>(
+    registry: &Registry<M>,
+    request: &PlanRequest,
+    found: &[Cause],
+    cancel: &Cancel,
+) -> Vec<Relaxation> {
     let helps = |relaxation: &Relaxation| {
+        if cancel.is_cancelled() {
+            return false;
+        }
         let Some(problem) = relaxation.applied(&request.problem) else { return false };
         let request = PlanRequest { problem, ..request.clone() };
-        prepare(registry, &request.problem).is_ok()
-            && looked_for(registry, &request, true).is_ok_and(|causes| !causes.iter().any(Cause::is_decisive))
+        prepare_unless(registry, &request.problem, cancel).is_ok()
+            && looked_for(registry, &request, true, cancel).is_ok_and(|causes| !causes.iter().any(Cause::is_decisive))
+            && !cancel.is_cancelled()
     };
     let near = Relaxation::against(registry, &request.problem, found);
     near.into_iter().take(TRIED_REMEDIES).filter(helps).take(REMEDIES).collect()
 }
 
-/// What keeps a plan of the problem away, as far as a bounded number of tries tells.
+/// What keeps a plan of the problem away, as far as a bounded number of tries tells; of few if `cancel` ends them.
 ///
 /// # Errors
 /// As [`prepare`].
-pub fn causes<M: TaskRobot>(registry: &Registry<M>, request: &PlanRequest) -> Result<Vec<Cause>, PlanningError> {
-    looked_for(registry, request, false)
+pub fn causes<M: TaskRobot>(
+    registry: &Registry<M>,
+    request: &PlanRequest,
+    cancel: &Cancel,
+) -> Result<Vec<Cause>, PlanningError> {
+    looked_for(registry, request, false, cancel)
 }
 
 /// [`causes`], with fewer tries if it is enough to see whether something good is easily found.
@@ -222,13 +246,15 @@ fn looked_for<M: TaskRobot>(
     registry: &Registry<M>,
     request: &PlanRequest,
     is_quick: bool,
+    cancel: &Cancel,
 ) -> Result<Vec<Cause>, PlanningError> {
     let file = &request.problem;
     let (robot, arm) = M::build(&file.robot)?;
     let allowed: Vec<_> = registry.allowed(file).collect();
     let Built { world, start, goal, .. } = world::build_with(registry, file, robot, arm)?;
-    let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal };
-    Ok(Inquest { outlook, look: Look { m: &world, start: &start, goal: &goal, is_quick } }.causes())
+    let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal, cancel };
+    let look = Look { m: &world, start: &start, goal: &goal, is_quick, cancel };
+    Ok(Inquest { outlook, look }.causes())
 }
 
 /// Looks for causes.

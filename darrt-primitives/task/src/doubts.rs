@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use darrt_core::budget::Cancel;
 use darrt_core::goal::Goal as _;
 use darrt_core::observe::accounts::Bucket;
 use darrt_core::primitive::{Infeasible, PrimitiveId};
@@ -104,6 +105,8 @@ pub(crate) struct Outlook<'a, M: Manipulator> {
     pub(crate) m: &'a Tabletop<M>,
     pub(crate) start: &'a TabletopState<M>,
     pub(crate) goal: &'a TabletopGoal<M::Joints>,
+    /// Ends the tries: then nothing is doubted.
+    pub(crate) cancel: &'a Cancel,
 }
 
 impl<'a, M: Manipulator> Outlook<'a, M> {
@@ -202,11 +205,11 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         let name = &means.object.name;
         let no_pick = match &means.pick {
             Ok(()) if lies_flat(self.m, state, id) => "it is only taken by its rim, which lies flat".to_owned(),
-            Ok(()) => tried(TRIES, "pick", |rng| pick(self.m, state, id, rng).map(drop))?,
+            Ok(()) => self.tried(TRIES, "pick", |rng| pick(self.m, state, id, rng).map(drop))?,
             Err(why) => why.clone(),
         };
         let no_push = match &means.push {
-            Ok(()) => tried(PUSHES, "push", |rng| push(self.m, state, id, &around(rng, &pose), rng).map(drop))?,
+            Ok(()) => self.tried(PUSHES, "push", |rng| push(self.m, state, id, &around(rng, &pose), rng).map(drop))?,
             Err(why) => why.clone(),
         };
         Some(Doubt {
@@ -239,7 +242,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
             let target = goal.sample(self.m, rng).ok_or(Infeasible::OffSupport)?;
             target.object(id).copied().ok_or(Infeasible::OffSupport)
         };
-        let no_place = tried(TRIES, "set it down", |rng| {
+        let no_place = self.tried(TRIES, "set it down", |rng| {
             let target = target(rng)?;
             let held = self.held(state, id, rng).ok_or(Infeasible::NoHold)?;
             place(self.m, &held, &target, rng).map(drop)
@@ -250,7 +253,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
             let words = format!("`{name}` can hardly be set down at its goal: {no_place}");
             return Some(Doubt { words, refuted: Some(refuted) });
         }
-        let no_push = tried(PUSHES, "push it there", |rng| {
+        let no_push = self.tried(PUSHES, "push it there", |rng| {
             let target = target(rng)?;
             let way = push(self.m, state, id, &target, rng)?;
             let end = way.last().map(|last| last.at(self.m, 1.0, state));
@@ -260,6 +263,30 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         })?;
         let words = format!("`{name}` can hardly come to its goal: {no_place}; {no_push}");
         Some(Doubt { words, refuted: Some(refuted) })
+    }
+
+    /// Tries until it succeeds; what was in the way if it never does.
+    fn tried(
+        &self,
+        tries: u64,
+        what: &str,
+        mut action: impl FnMut(&mut dyn Rng) -> Result<(), Infeasible>,
+    ) -> Option<String> {
+        let mut reasons = BTreeMap::<String, u64>::new();
+        for i in 0..tries {
+            if self.cancel.is_cancelled() {
+                return None;
+            }
+            match action(&mut stream(0, 0, i, Purpose::Attempt)) {
+                Ok(()) => return None,
+                Err(why) => *reasons.entry(in_words(&why)).or_default() += 1,
+            }
+        }
+        let mut reasons: Vec<_> = reasons.into_iter().collect();
+        reasons.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        let reasons: Vec<_> =
+            reasons.into_iter().take(REASONS).map(|(reason, count)| format!("{reason} ({count})")).collect();
+        Some(format!("all of {tries} tries to {what} fail: {}", reasons.join(", ")))
     }
 
     /// The object in the hand, by one of its grasps.
@@ -282,22 +309,6 @@ fn around(rng: &mut dyn Rng, pose: &Isometry3<f64>) -> Isometry3<f64> {
     let (y, x) = rng.random_range(-std::f64::consts::PI..std::f64::consts::PI).sin_cos();
     let far_m = rng.random_range(NEAR_M..FAR_M);
     Translation3::new(far_m * x, far_m * y, 0.0) * pose
-}
-
-/// Tries until it succeeds; what was in the way if it never does.
-fn tried(tries: u64, what: &str, mut action: impl FnMut(&mut dyn Rng) -> Result<(), Infeasible>) -> Option<String> {
-    let mut reasons = BTreeMap::<String, u64>::new();
-    for i in 0..tries {
-        match action(&mut stream(0, 0, i, Purpose::Attempt)) {
-            Ok(()) => return None,
-            Err(why) => *reasons.entry(in_words(&why)).or_default() += 1,
-        }
-    }
-    let mut reasons: Vec<_> = reasons.into_iter().collect();
-    reasons.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    let reasons: Vec<_> =
-        reasons.into_iter().take(REASONS).map(|(reason, count)| format!("{reason} ({count})")).collect();
-    Some(format!("all of {tries} tries to {what} fail: {}", reasons.join(", ")))
 }
 
 fn in_words(why: &Infeasible) -> String {

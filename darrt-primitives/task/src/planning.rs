@@ -284,7 +284,7 @@ fn prepare_watched<M: TaskRobot>(
         error => PlanningError::Doubtful { error: Box::new(error), doubts: so_far.join("; ") },
     };
     let validity = SceneValidity::new(&world);
-    let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal };
+    let outlook = Outlook { problem: file, allowed: &allowed, m: &world, start: &start, goal: &goal, cancel };
     let immovable = outlook.immovable();
     let blocked = crate::goal_check::check_goal(&world, &goal, &scene, &start, &immovable).map_err(&with_doubts)?;
     outlook.check_rims()?;

@@ -104,7 +104,8 @@ pub trait Program: Send + Sync {
     ///
     /// # Errors
     /// As [`plan`].
-    fn diagnose(&self, request: &PlanRequest, result: &PlanResult) -> Result<Diagnosis, PlanningError>;
+    fn diagnose(&self, request: &PlanRequest, result: &PlanResult, cancel: &Cancel)
+    -> Result<Diagnosis, PlanningError>;
 
     /// With which changes a problem has a plan; see [`explain`].
     ///
@@ -189,8 +190,13 @@ impl<M: TaskRobot> Program for Robots<M> {
         self.of(&request.plan.problem).replan(request, cancel, observer)
     }
 
-    fn diagnose(&self, request: &PlanRequest, result: &PlanResult) -> Result<Diagnosis, PlanningError> {
-        self.of(&request.problem).diagnose(request, result)
+    fn diagnose(
+        &self,
+        request: &PlanRequest,
+        result: &PlanResult,
+        cancel: &Cancel,
+    ) -> Result<Diagnosis, PlanningError> {
+        self.of(&request.problem).diagnose(request, result, cancel)
     }
 
     fn explain(&self, request: &ExplainRequest, cancel: &Cancel) -> Result<Explanation, PlanningError> {
@@ -242,8 +248,13 @@ impl<M: TaskRobot> Program for Registry<M> {
         replan(self, request, cancel, observer)
     }
 
-    fn diagnose(&self, request: &PlanRequest, result: &PlanResult) -> Result<Diagnosis, PlanningError> {
-        diagnose(self, request, result)
+    fn diagnose(
+        &self,
+        request: &PlanRequest,
+        result: &PlanResult,
+        cancel: &Cancel,
+    ) -> Result<Diagnosis, PlanningError> {
+        diagnose(self, request, result, cancel)
     }
 
     fn explain(&self, request: &ExplainRequest, cancel: &Cancel) -> Result<Explanation, PlanningError> {

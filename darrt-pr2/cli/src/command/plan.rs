@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use darrt_core::budget::{Cancel, Stop};
 use darrt_core::search::Algorithm;
@@ -27,6 +27,11 @@ use darrt_task::robot::{RobotError, RobotFacts};
 use darrt_task::text::{counted, on_one_line};
 use darrt_task::viewer::RobotModel;
 use darrt_task::viewer::search::SearchData;
+
+/// So long it is looked for reasons after any search.
+const A_MOMENT: Duration = Duration::from_secs(5);
+/// How often the clock is looked at meanwhile.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
 
 /// Plans and reports.
 ///
@@ -53,7 +58,7 @@ pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Out
         output.print(&statistics::report(&result.accounts))?;
     }
     let (Some(plan), Some(proof)) = (&result.plan, &result.proof) else {
-        return Err(failed(program, options, (&request, &result), &files, output)?);
+        return Err(failed(program, options, (&request, &result), (&files, &cancel), output)?);
     };
     let robot = program.facts(&plan.problem).map_err(|error| Failure::input(error.to_string()))?;
     let story = Story::of_plan(plan, &robot)?;
@@ -194,12 +199,12 @@ fn failed(
     program: &dyn Program,
     options: &PlanOptions,
     (request, result): (&PlanRequest, &PlanResult),
-    files: &Files,
+    (files, cancel): (&Files, &Cancel),
     output: &mut Output,
 ) -> Result<Failure, Failure> {
     let name = &request.problem.name;
     let diagnosis = program
-        .diagnose(request, result)
+        .diagnose(request, result, &patience(cancel, result.elapsed))
         .map_err(|error| Failure::input(located(&options.problem, &error.to_string())))?;
     write_why(options, &diagnosis)?;
     if options.stats && !options.output.as_deref().is_some_and(output::is_stdout) {
@@ -231,6 +236,20 @@ fn failed(
         }
     }
     Ok(Failure::new(exit, format!("{name}: no plan found (seed {}): {why}", request.seed)))
+}
+
+/// Nobody waits for reasons longer than for the plan, or than a moment; after a search that was interrupted, than that.
+fn patience(cancel: &Cancel, searched: Duration) -> Cancel {
+    let (over, was_interrupted) = (Cancel::new(), cancel.is_cancelled());
+    let end = Instant::now() + if was_interrupted { A_MOMENT } else { searched.max(A_MOMENT) };
+    let (clock, interrupt) = (over.clone(), cancel.clone());
+    std::thread::spawn(move || {
+        while Instant::now() < end && (was_interrupted || !interrupt.is_cancelled()) {
+            std::thread::sleep(BETWEEN_LOOKS);
+        }
+        clock.cancel();
+    });
+    over
 }
 
 /// The error of a problem that cannot be planned; what keeps a plan away is written down as well, and drawn.

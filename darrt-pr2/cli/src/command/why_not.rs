@@ -52,7 +52,8 @@ pub(crate) fn run(program: &dyn Program, options: &WhyNotOptions, output: &mut O
     if options.json {
         output.print(&output::json(&answer, "the answer")?)?;
     } else {
-        output.tell(&words(&request.idea, &answer))?;
+        // Its lines are options to be copied.
+        output.print(&words(&request.idea, &answer))?;
     }
     Ok(if answer.fault.is_none() { Exit::Solved } else { Exit::NotSolved })
 }
@@ -105,7 +106,7 @@ fn of_plan(program: &dyn Program, options: &WhyNotOptions, output: &mut Output) 
     } else {
         let iterations = counted(replanned.result.iterations, "iteration");
         lines.push(format!("{kept}, none was found that works in {iterations}"));
-        causes = program.diagnose(&request, &replanned.result).map_err(failed)?.causes;
+        causes = program.diagnose(&request, &replanned.result, &cancel).map_err(failed)?.causes;
         lines.extend(causes.iter().flat_map(diagnosis::text::of_cause));
     }
     if options.json {

@@ -96,7 +96,7 @@ pub fn explain<M: TaskRobot>(
     let proven = refused.as_ref().and_then(|error| Diagnosis::of_error(&problem.name, error));
     let found = match proven {
         Some(proven) => proven.causes,
-        None => causes(registry, &request.plan).unwrap_or_default(),
+        None => causes(registry, &request.plan, cancel).unwrap_or_default(),
     };
     let mut explanation = Explanation {
         problem: problem.name.clone(),
@@ -184,7 +184,7 @@ impl<M: TaskRobot> Solver<'_, M> {
             _ => None,
         });
         let mut request = PlanRequest { problem: changed.clone(), ..self.request.plan.clone() };
-        let is_doubted = looked_for(self.registry, &request, true)?.iter().any(Cause::is_decisive);
+        let is_doubted = looked_for(self.registry, &request, true, self.cancel)?.iter().any(Cause::is_decisive);
         let iterations = more.unwrap_or(self.request.iterations);
         // A problem as it is gets all of them: that nothing was found in a few tries is no proof.
         let share = if is_doubted && !changes.is_empty() { DOUBTED } else { 1 };

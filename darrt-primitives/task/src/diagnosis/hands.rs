@@ -6,6 +6,7 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
+use darrt_core::budget::Cancel;
 use darrt_core::domain::Domain as _;
 use darrt_core::goal::Goal as _;
 use darrt_core::primitive::Infeasible;
@@ -60,6 +61,8 @@ pub(super) struct Look<'a, M: Manipulator> {
     pub(super) goal: &'a TabletopGoal<M::Joints>,
     /// Is it enough to see whether something good is easily found?
     pub(super) is_quick: bool,
+    /// Ends the tries.
+    pub(super) cancel: &'a Cancel,
 }
 
 impl<M: Manipulator> Clone for Look<'_, M> {
@@ -158,7 +161,9 @@ impl<'a, M: Manipulator> Look<'a, M> {
         let (mut tried, mut free, mut bases) = (0, 0, 0);
         let movable = self.m.movable(id);
         let mut wanted = FREE_HANDS;
-        while let Some(movable) = movable.filter(|_| tried < DRAWS * wanted && free < wanted && bases < MOST_BASES) {
+        while let Some(movable) = movable
+            .filter(|_| tried < DRAWS * wanted && free < wanted && bases < MOST_BASES && !self.cancel.is_cancelled())
+        {
             let rng = &mut stream(0, 0, tried, Purpose::Attempt);
             tried += 1;
             let end = match (draw(self.m, movable, rng), pose(rng)) {
@@ -261,7 +266,7 @@ impl<'a, M: Manipulator> Look<'a, M> {
         let directions: Vec<_> = [-Vector3::z(), Vector3::z()].into_iter().chain(level).collect();
         let left = Cell::new(MOST_ASKED);
         let mut best = None::<f64>;
-        for (index, hand) in hands.iter().enumerate() {
+        for (index, hand) in hands.iter().enumerate().take_while(|_| !self.cancel.is_cancelled()) {
             for (side, direction) in directions.iter().enumerate() {
                 let reaches = |far_m: f64| {
                     let rng = &mut stream(0, 2 + side as u64, index as u64, Purpose::Attempt);

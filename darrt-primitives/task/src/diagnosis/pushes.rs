@@ -36,7 +36,7 @@ impl<M: Manipulator> Look<'_, M> {
         let mut pushes =
             Pushes { object, tried: 0, made: 0, taken: 0, at_goal: 0, blockers: Vec::new(), unreachable: 0 };
         let mut ends = vec![state.clone()];
-        while pushes.tried < PUSHES && pushes.taken < ENOUGH && pushes.at_goal < ENOUGH {
+        while pushes.tried < PUSHES && pushes.taken < ENOUGH && pushes.at_goal < ENOUGH && !self.cancel.is_cancelled() {
             let rng = &mut stream(0, 3, pushes.tried, Purpose::Attempt);
             pushes.tried += 1;
             let Some(from) = ends.get(rng.random_range(0..ends.len())) else { break };

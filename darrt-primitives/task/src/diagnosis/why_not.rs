@@ -3,6 +3,7 @@
 //!
 //! All is drawn from fixed seeds: the same question has the same answer. "From none of 96 bases" is what was counted.
 
+use darrt_core::budget::Cancel;
 use darrt_core::domain::Domain as _;
 use darrt_core::random::{Purpose, stream};
 use darrt_core::space::ComponentSpace as _;
@@ -167,7 +168,8 @@ pub fn why_not<M: TaskRobot>(registry: &Registry<M>, request: &WhyNotRequest) ->
     };
     let joints: Vec<_> = facts.arm_joints.iter().map(|name| (name.clone(), slides(name))).collect();
     let Built { world, start, goal, scene, .. } = world::build_with(registry, file, robot, arm)?;
-    let look = Look { m: &world, start: &start, goal: &goal, is_quick: true };
+    let cancel = &Cancel::new();
+    let look = Look { m: &world, start: &start, goal: &goal, is_quick: true, cancel };
     let asked = Asked { look, scene: &scene, joints: &joints };
     let (fault, variant) = match &request.idea {
         Idea::State { base, joints } => {
