@@ -153,7 +153,7 @@ impl Diagnosis {
 /// search itself has shown.
 ///
 /// # Errors
-/// As [`prepare`].
+/// As [`prepare`](crate::planning::prepare).
 pub fn diagnose<M: TaskRobot>(
     registry: &Registry<M>,
     request: &PlanRequest,
@@ -232,7 +232,7 @@ fn remedies<M: TaskRobot>(
 /// What keeps a plan of the problem away, as far as a bounded number of tries tells; of few if `cancel` ends them.
 ///
 /// # Errors
-/// As [`prepare`].
+/// As [`prepare`](crate::planning::prepare).
 pub fn causes<M: TaskRobot>(
     registry: &Registry<M>,
     request: &PlanRequest,
