@@ -125,7 +125,7 @@ pub(crate) fn advice(result: &PlanResult, diagnosis: &Diagnosis) -> Vec<String> 
     if diagnosis.is_cut_short {
         let why =
             "what keeps a plan away was not found out in as long as the search took; `darrt explain` takes its time";
-        return vec![format!("{why}. {limit} may help{progress}")];
+        return vec![format!("{why}, and {limit} may help{progress}")];
     }
     let by_itself = if is_doubted { "" } else { ": each object can be taken and brought to its goal by itself" };
     let or_allow = if is_steered { ", or to allow more in `steer`," } else { "" };
