@@ -1,5 +1,17 @@
 //! Shapes, scenes, support surfaces, collision and clearance for manipulation planning.
 //!
+//! ```
+//! use darrt_geom::clearance::between;
+//! use darrt_geom::{Body, Shape};
+//! use nalgebra::{Isometry3, Vector3};
+//!
+//! let ball = Body::single("ball", Shape::sphere(0.05)?)?;
+//! let table = Body::single("table", Shape::cuboid(Vector3::new(0.5, 0.5, 0.02))?)?; // half its size, metres
+//! let gap = between(&ball, &Isometry3::translation(0.0, 0.0, 0.1), &table, &Isometry3::identity())?;
+//! assert!((gap.distance - 0.03).abs() < 1e-6);
+//! # Ok::<(), darrt_geom::GeomError>(())
+//! ```
+//!
 //! | question | file |
 //! |---|---|
 //! | what solids are there, and how big are they? | [`shape`], [`hull`], [`mesh`] |

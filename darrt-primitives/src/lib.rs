@@ -1,5 +1,17 @@
 //! Robot-independent building blocks for manipulation primitives.
 //!
+//! ```
+//! use darrt_primitives::push::Friction;
+//! use darrt_primitives::push::steady::SlidingDisc;
+//!
+//! let (table, fingers) = (Friction::new(0.3)?, Friction::new(0.4)?);
+//! let plate = SlidingDisc { radius_m: 0.12, mass_kg: 0.4, table, fingers };
+//! // Two fingers, a place that is known to 10 mm, an arm that pushes with 30 N.
+//! let push = plate.steady_push(plate.finger_gap_m(0.088), 0.01, 30.0)?;
+//! assert!(push.settle_m > 0.0, "so far it slides until it rests against both");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! | question | file |
 //! |---|---|
 //! | what must a robot offer? | [`manipulator`], [`joints`], [`kinematics`] |
