@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::exit::{Exit, Failure};
 use super::table::WIDTH;
 use darrt_task::file_kind::FileKind;
+use darrt_task::picture::Format;
 use darrt_task::text::printable;
 use darrt_task::text_file;
 
@@ -107,9 +108,9 @@ pub(crate) fn json(value: &impl serde::Serialize, what: &str) -> Result<String, 
     text.map_err(|error| Failure::new(Exit::CannotWrite, format!("{what} cannot be written as JSON: {error}")))
 }
 
-/// Is this the standard output, and no file? Only plans go there.
-pub(crate) fn is_stdout(path: &Path) -> bool {
-    path.as_os_str() == "-"
+/// Does this mean the standard input or output, and no file? Only plans go there.
+pub(crate) fn is_standard_stream(path: &Path) -> bool {
+    path == Path::new(text_file::STDIN)
 }
 
 /// Says before any work whether a file can be put at `path`, and where it will really be: links are followed.
@@ -124,7 +125,7 @@ pub(crate) fn writable(path: &Path) -> Result<PathBuf, Failure> {
 /// [`writable`]; `is_kept` says which of what a person wrote stays.
 fn placed(path: &Path, is_kept: impl Fn(&str) -> bool) -> Result<PathBuf, Failure> {
     let refuse = |reason: String| Failure::new(Exit::CannotWrite, format!("{}: {reason}", path.display()));
-    if is_stdout(path) {
+    if is_standard_stream(path) {
         let why = "is the standard output, where only the plan of `darrt plan` can go; a file of this name is `./-`";
         return Err(refuse(why.to_owned()));
     }
@@ -170,8 +171,7 @@ fn source_kind(place: &Path) -> Option<&'static str> {
 /// # Errors
 /// [`Exit::BadInput`] for another ending than `.html` or `.htm`, else as [`writable`].
 pub(crate) fn writable_page(path: &Path) -> Result<PathBuf, Failure> {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    if matches!(ending.as_deref(), Some("html" | "htm")) {
+    if matches!(Format::of_path(path), Ok(Format::Html)) {
         return writable(path);
     }
     let there = if path.exists() { ", and what is there would be lost" } else { "" };

@@ -5,7 +5,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use crate::text::shell_word;
-use crate::text_file::STDIN;
+use crate::text_file::{STDIN, STDIN_NAME};
 
 /// As much of a file as is looked at.
 const HEAD: u64 = 4096;
@@ -94,9 +94,6 @@ impl FileKind {
         }
     }
 }
-
-/// How errors call the standard input.
-const STDIN_NAME: &str = "standard input";
 
 fn description(file: &str) -> String {
     format!("is a robot description (URDF); a robot file for it is begun with `darrt robot new {file}`")

@@ -48,12 +48,15 @@ pub fn read(path: &Path, max_bytes: u64) -> Result<String, TextFileError> {
 /// What a person writes for the standard input in the place of a file.
 pub const STDIN: &str = "-";
 
+/// How errors call the standard input.
+pub const STDIN_NAME: &str = "standard input";
+
 /// The text on the standard input, at most `max_bytes` long.
 ///
 /// # Errors
 /// [`TextFileError::File`] when it is longer, cannot be read, or is not UTF-8.
 pub fn read_stdin(max_bytes: u64) -> Result<String, TextFileError> {
-    Ok(bounded_file::read_stream(io::stdin().lock(), "standard input", max_bytes)?)
+    Ok(bounded_file::read_stream(io::stdin().lock(), STDIN_NAME, max_bytes)?)
 }
 
 /// Refuses a text that is too long or, by the scanner of its format, nested too deeply; the scanner gives the byte offset

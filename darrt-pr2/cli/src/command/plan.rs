@@ -39,7 +39,7 @@ const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
 /// Every end but a verified plan that is written, with its exit code.
 pub(crate) fn run(program: &dyn Program, options: &PlanOptions, output: &mut Output) -> Result<Exit, Failure> {
     // A plan on the standard output is alone there.
-    let is_quiet = options.quiet || options.output.as_deref().is_some_and(output::is_stdout);
+    let is_quiet = options.quiet || options.output.as_deref().is_some_and(output::is_standard_stream);
     let problem = options
         .safety
         .applied(opened(program, (&options.problem, options.robot.as_ref()), is_quiet, output)?, &options.problem)?;
@@ -207,7 +207,7 @@ fn failed(
         .diagnose(request, result, &patience(cancel, result.elapsed))
         .map_err(|error| Failure::input(located(&options.problem, &error.to_string())))?;
     write_why(options, &diagnosis)?;
-    if options.stats && !options.output.as_deref().is_some_and(output::is_stdout) {
+    if options.stats && !output::is_standard_stream(&files.plan) {
         output.print(&diagnosis::details(result, &diagnosis))?;
     }
     let mut why = diagnosis::explain(result, &diagnosis);
@@ -341,7 +341,7 @@ fn improvement(result: &PlanResult, story: &Story, robot: &RobotFacts) -> Result
 
 /// The files to write, checked before the work.
 struct Files {
-    /// Also [the standard output](output::is_stdout).
+    /// Also [the standard output](output::is_standard_stream).
     plan: PathBuf,
     picture: Option<(PathBuf, Format)>,
     record: Option<PathBuf>,
@@ -357,10 +357,10 @@ impl Files {
         let picture = match (&options.picture, options.no_picture) {
             (_, true) => None,
             (Some(path), _) => Some(path.clone()),
-            (None, _) if output::is_stdout(&plan) => None,
+            (None, _) if output::is_standard_stream(&plan) => None,
             (None, _) => Some(beside(&plan)),
         };
-        let plan = if output::is_stdout(&plan) { plan } else { output::writable(&plan)? };
+        let plan = if output::is_standard_stream(&plan) { plan } else { output::writable(&plan)? };
         let picture = match picture {
             Some(path) => Some((output::writable(&path)?, Format::of_path(&path)?)),
             None => None,
@@ -408,7 +408,7 @@ impl Files {
 
     /// Puts the plan where it was asked for.
     fn put(&self, plan: &PlanFile, output: &mut Output) -> Result<(), Failure> {
-        if output::is_stdout(&self.plan) {
+        if output::is_standard_stream(&self.plan) {
             return output.print(&plan.to_json_in(Path::new("."))?);
         }
         Ok(plan.write(&self.plan)?)
@@ -432,7 +432,7 @@ impl Files {
 
     /// Writes the beginning of a plan beside where the plan would be, and its picture; says where.
     fn write_partial(&self, program: &dyn Program, plan: &PlanFile, output: &mut Output) -> Result<PathBuf, Failure> {
-        let is_stdout = output::is_stdout(&self.plan);
+        let is_stdout = output::is_standard_stream(&self.plan);
         let path = if is_stdout { PathBuf::from("the standard output") } else { with_mark(&self.plan, "partial") };
         if is_stdout {
             self.put(plan, output)?;

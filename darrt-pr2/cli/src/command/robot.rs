@@ -10,7 +10,6 @@ use darrt_task::problem_file::ProblemFile;
 use darrt_task::program::Program;
 use darrt_task::robot_file::Source;
 use darrt_task::text::shell_word;
-use darrt_task::text_file;
 
 use crate::args::{RobotCheckOptions, RobotCommand, RobotListOptions, RobotNewOptions, RobotOptions};
 use crate::drawing;
@@ -126,7 +125,7 @@ pub(super) fn draw(
 
 /// Robots are files that name other files.
 fn not_stdin(path: &Path) -> Result<(), Failure> {
-    if path == Path::new(text_file::STDIN) {
+    if output::is_standard_stream(path) {
         let why = "a robot is read from a file, not from the standard input, for it names files that lie beside it";
         return Err(Failure::input(format!("{}: {why}", path.display())));
     }

@@ -1,12 +1,12 @@
 //! Can the base stand where the robot's own goal wants it?
 
-use darrt_geom::GeomError;
+use darrt_geom::Body;
 use darrt_geom::clearance::between;
 use darrt_geom::scene::Scene;
 use darrt_primitives::goal::TabletopGoal;
 use darrt_primitives::manipulator::{Configuration, LinkGroup, Manipulator};
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
 use crate::planning_error::PlanningError;
 
@@ -30,7 +30,7 @@ pub(super) fn check<M: Manipulator>(
     for (link, pose) in robot.links().iter().zip(&poses).filter(|(link, _)| link.group == LinkGroup::Base) {
         let slack_m = robot_goal.tolerance_m + robot_goal.tolerance_rad * reach_m(&link.body, pose, &axis);
         for fixed in scene.bodies() {
-            let deep_m = -deepest(&link.body, pose, fixed)?;
+            let deep_m = -between(&link.body, pose, &fixed.body, &fixed.world_from_body)?.distance;
             if deep_m > slack_m {
                 let (link, by) = (link.body.name.to_string(), fixed.body.name.to_string());
                 return Err(PlanningError::BaseGoalBlocked { link, by, base, deep_m });
@@ -40,19 +40,10 @@ pub(super) fn check<M: Manipulator>(
     Ok(())
 }
 
-/// Signed distance, metres.
-fn deepest(
-    body: &darrt_geom::Body,
-    pose: &Isometry3<f64>,
-    fixed: &darrt_geom::scene::FixedBody,
-) -> Result<f64, GeomError> {
-    Ok(between(body, pose, &fixed.body, &fixed.world_from_body)?.distance)
-}
-
 /// No point of the body is farther from the vertical through `axis`, metres.
-fn reach_m(body: &darrt_geom::Body, pose: &Isometry3<f64>, axis: &Vector3<f64>) -> f64 {
+fn reach_m(body: &Body, pose: &Isometry3<f64>, axis: &Vector3<f64>) -> f64 {
     let (low, high) = body.local_aabb();
     let half = 0.5 * (high - low);
-    let centre = pose * nalgebra::Point3::from(low.coords + half);
+    let centre = pose * Point3::from(low.coords + half);
     (centre.coords.xy() - axis.xy()).norm() + half.norm()
 }

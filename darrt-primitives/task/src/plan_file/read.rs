@@ -25,7 +25,7 @@ impl PlanFile {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, PlanFileError> {
         let path = path.as_ref();
         if path == Path::new(text_file::STDIN) {
-            return Self::from_json(&text_file::read_stdin(MAX_BYTES)?, "standard input");
+            return Self::from_json(&text_file::read_stdin(MAX_BYTES)?, text_file::STDIN_NAME);
         }
         let name = path.display().to_string();
         let mut plan = Self::from_json(&text_file::read(path, MAX_BYTES)?, &name)?;

@@ -44,7 +44,7 @@ impl ProblemFile {
     /// # Errors
     /// As [`ProblemFile::read`].
     pub fn from_stdin() -> Result<Self, ProblemFileError> {
-        Self::from_toml(&text_file::read_stdin(MAX_BYTES)?, "standard input")
+        Self::from_toml(&text_file::read_stdin(MAX_BYTES)?, text_file::STDIN_NAME)
     }
 
     /// Parses, completes and validates a problem in TOML; `source_name` is how errors call the text.
