@@ -1,5 +1,6 @@
 //! The workers: take the next run, plan, hand over the record.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::mpsc;
@@ -14,14 +15,17 @@ use super::kept;
 use super::machine::Machine;
 use super::record::Record;
 use darrt_task::planning::PlanResult;
+use darrt_task::planning_error::PlanningError;
 use darrt_task::program::Program;
 
 /// Runs `jobs` on `machine.jobs` threads and hands every record to `sink`, on the calling thread, as runs end. Runs that
 /// `cancel` cuts short are dropped: they say nothing.
 ///
+/// Returned is what is proven to have no plan, with the proof: it has no runs, and the other problems do not wait for it.
+///
 /// # Errors
-/// [`BenchError::Planning`] for a problem that cannot be planned at all, or what `sink` refuses; the other runs are then
-/// cancelled.
+/// [`BenchError::Planning`] for a problem that cannot be planned for another reason, or what `sink` refuses; the other runs
+/// are then cancelled.
 pub fn run(
     program: &dyn Program,
     set: &JobSet,
@@ -29,9 +33,16 @@ pub fn run(
     machine: &Machine,
     cancel: &Cancel,
     mut sink: impl FnMut(Record) -> Result<(), BenchError>,
-) -> Result<(), BenchError> {
+) -> Result<Impossible, BenchError> {
     let next = Mutex::new(jobs.iter().copied());
-    let take = || next.lock().ok().and_then(|mut next| next.next());
+    let impossible = Mutex::new(Impossible::new());
+    let is_left_out = |job: &Job| impossible.lock().is_ok_and(|proofs| proofs.contains_key(&(job.problem, job.variant)));
+    let take = || next.lock().ok().and_then(|mut next| next.find(|job| !is_left_out(job)));
+    let leave_out = |job: Job, proof| {
+        if let Ok(mut proofs) = impossible.lock() {
+            proofs.insert((job.problem, job.variant), proof);
+        }
+    };
     std::thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
         for _ in 0..machine.jobs.max(1) {
@@ -42,6 +53,9 @@ pub fn run(
                     match one(program, set, job, machine, cancel) {
                         Ok(None) => {}
                         Ok(Some(record)) => drop(sender.send(Ok(record))),
+                        Err(BenchError::Planning { source, .. }) if source.is_impossible() => {
+                            leave_out(job, *source);
+                        }
                         Err(error) => drop(sender.send(Err(error))),
                     }
                 }
@@ -57,8 +71,12 @@ pub fn run(
             }
         }
         result
-    })
+    })?;
+    Ok(impossible.into_inner().unwrap_or_default())
 }
+
+/// What is proven to have no plan, by the indices of problem and variant in the set of jobs.
+pub type Impossible = BTreeMap<(usize, usize), PlanningError>;
 
 /// One run; `None` if it was cancelled.
 fn one(
@@ -144,6 +162,26 @@ mod tests {
         let one = outcomes(1);
         assert_eq!(one.len(), 6);
         assert_eq!(outcomes(3), one);
+    }
+
+    #[test]
+    fn a_problem_that_is_proven_to_have_no_plan_is_left_out_and_the_others_are_run() {
+        let registry = darrt_pr2::registry();
+        let hopeless = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/everyday/heavy-plate.toml");
+        let subjects = [hopeless, "bowl"].map(|name| Subject::open(&registry, name).unwrap());
+        let variants = vec![Variant::named("default").unwrap()];
+        let set = JobSet::new(subjects.to_vec(), variants, 0..3, None, Some(4)).unwrap();
+        let jobs: Vec<_> = set.jobs(Shard::WHOLE).collect();
+        for workers in [1, 3] {
+            let mut run_of = Vec::new();
+            let proofs = run(&registry, &set, &jobs, &machine(workers), &Cancel::new(), |record| {
+                run_of.push(record.problem);
+                Ok(())
+            })
+            .unwrap();
+            assert_eq!(run_of, ["bowl"; 3]);
+            assert!(proofs.keys().eq(&[(0, 0)]) && proofs[&(0, 0)].is_impossible());
+        }
     }
 
     #[test]

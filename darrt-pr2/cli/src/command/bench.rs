@@ -18,6 +18,7 @@ use crate::bench::{
 use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
 use crate::progress::Bar;
+use darrt_task::planning_error::PlanningError;
 use darrt_task::program::Program;
 use darrt_task::text::counted;
 
@@ -36,8 +37,11 @@ pub(crate) fn run(program: &dyn Program, options: &BenchOptions, output: &mut Ou
         return Ok(Exit::Solved);
     }
     let told = Told::choose(options)?;
-    let (all, end) =
-        if options.merge.is_empty() { measure(program, options, output)? } else { (merge(options)?, End::All) };
+    let Measured { all, left_out, end } =
+        if options.merge.is_empty() { measure(program, options, output)? } else { Measured { all: merge(options)?, left_out: Vec::new(), end: End::All } };
+    for (key, proof) in &left_out {
+        output.tell(&format!("left out: {} ({}): {proof}", key.problem, key.variant))?;
+    }
     let known = program.problems().first_names();
     told.write(&all, &known)?;
     if !options.quiet {
@@ -51,6 +55,7 @@ pub(crate) fn run(program: &dyn Program, options: &BenchOptions, output: &mut Ou
         }
     }
     match end {
+        End::All if all.is_empty() && !left_out.is_empty() => Ok(Exit::Impossible),
         End::All => Ok(Exit::Solved),
         End::Interrupted { left } => {
             let left = counted(left as u64, "run");
@@ -65,8 +70,16 @@ enum End {
     Interrupted { left: usize },
 }
 
+/// What the runs gave.
+struct Measured {
+    all: Collection,
+    /// What is proven to have no plan, of the problems with their variants, and why; they have no runs.
+    left_out: Vec<(Key, PlanningError)>,
+    end: End,
+}
+
 /// Does the runs that are not in the file yet; all that were asked for.
-fn measure(program: &dyn Program, options: &BenchOptions, output: &mut Output) -> Result<(Collection, End), Failure> {
+fn measure(program: &dyn Program, options: &BenchOptions, output: &mut Output) -> Result<Measured, Failure> {
     let set = job_set(program, options)?;
     let set = match &options.keep {
         Some(folder) => set.keeping(folder.clone()),
@@ -88,15 +101,19 @@ fn measure(program: &dyn Program, options: &BenchOptions, output: &mut Output) -
     let progress = Bar::start(left.len(), "runs", options.quiet);
     let mut solved = 0;
     let name = path.display().to_string();
-    workers::run(program, &set, &left, &machine, &cancel, |record| {
+    let proofs = workers::run(program, &set, &left, &machine, &cancel, |record| {
         journal.add(&record)?;
         solved += usize::from(record.is_in_time());
         progress.advance(&format!(", {solved} solved"));
         all.add(record, &name)
     })?;
     progress.finish();
-    let missing = jobs.len() - all.len();
-    Ok((all, if missing == 0 { End::All } else { End::Interrupted { left: missing } }))
+    let is_impossible = |job: &Job| proofs.contains_key(&(job.problem, job.variant));
+    let missing = jobs.iter().filter(|job| !is_impossible(job) && !all.contains(&set.key(**job))).count();
+    let end = if missing == 0 { End::All } else { End::Interrupted { left: missing } };
+    let seed = options.seeds.start;
+    let left_out = proofs.into_iter().map(|((problem, variant), proof)| (set.key(Job { problem, variant, seed }), proof));
+    Ok(Measured { left_out: left_out.collect(), all, end })
 }
 
 fn job_set(program: &dyn Program, options: &BenchOptions) -> Result<JobSet, Failure> {
