@@ -36,7 +36,8 @@ pub fn run(
 ) -> Result<Impossible, BenchError> {
     let next = Mutex::new(jobs.iter().copied());
     let impossible = Mutex::new(Impossible::new());
-    let is_left_out = |job: &Job| impossible.lock().is_ok_and(|proofs| proofs.contains_key(&(job.problem, job.variant)));
+    let is_left_out =
+        |job: &Job| impossible.lock().is_ok_and(|proofs| proofs.contains_key(&(job.problem, job.variant)));
     let take = || next.lock().ok().and_then(|mut next| next.find(|job| !is_left_out(job)));
     let leave_out = |job: Job, proof| {
         if let Ok(mut proofs) = impossible.lock() {

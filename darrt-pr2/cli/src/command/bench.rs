@@ -37,8 +37,11 @@ pub(crate) fn run(program: &dyn Program, options: &BenchOptions, output: &mut Ou
         return Ok(Exit::Solved);
     }
     let told = Told::choose(options)?;
-    let Measured { all, left_out, end } =
-        if options.merge.is_empty() { measure(program, options, output)? } else { Measured { all: merge(options)?, left_out: Vec::new(), end: End::All } };
+    let Measured { all, left_out, end } = if options.merge.is_empty() {
+        measure(program, options, output)?
+    } else {
+        Measured { all: merge(options)?, left_out: Vec::new(), end: End::All }
+    };
     for (key, proof) in &left_out {
         output.tell(&format!("left out: {} ({}): {proof}", key.problem, key.variant))?;
     }
@@ -112,7 +115,8 @@ fn measure(program: &dyn Program, options: &BenchOptions, output: &mut Output) -
     let missing = jobs.iter().filter(|job| !is_impossible(job) && !all.contains(&set.key(**job))).count();
     let end = if missing == 0 { End::All } else { End::Interrupted { left: missing } };
     let seed = options.seeds.start;
-    let left_out = proofs.into_iter().map(|((problem, variant), proof)| (set.key(Job { problem, variant, seed }), proof));
+    let left_out =
+        proofs.into_iter().map(|((problem, variant), proof)| (set.key(Job { problem, variant, seed }), proof));
     Ok(Measured { left_out: left_out.collect(), all, end })
 }
 
