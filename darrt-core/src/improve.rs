@@ -6,11 +6,13 @@
 //! | manipulations are drawn anew, nearer to those before and behind them, or leading farther | `draw` |
 //! | one becomes two, where the cost says that the second makes up for what the first leaves uncertain | `stopover` |
 //! | the cheapest chain is judged until every motion of it is free | `judge` |
+//! | what has been seen so far, for what has not been judged | `experience` |
 //! | shortcuts between any two of its states | [`smooth`](crate::smooth) |
 //!
 //! The effort is counted in extensions, and no clock is read: the same plan and the same random numbers give the same result.
 
 mod draw;
+mod experience;
 mod judge;
 pub(crate) mod pieces;
 mod roadmap;
@@ -24,6 +26,7 @@ use crate::cost::ExecutionCost;
 use crate::domain::Domain;
 use crate::extend::{ExtendOptions, Extender};
 use crate::plan::Plan;
+use crate::search::Effort;
 use crate::smooth::smooth;
 use draw::Hope;
 use roadmap::{Roadmap, START};
@@ -34,6 +37,14 @@ const DRAWS_BETWEEN: usize = 32;
 /// How much effort goes into a better plan: it goes with the work that finding it took.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImproveOptions {
+    /// How many further trees grow from the start, whose plans are put beside the one that was found.
+    pub further_trees: usize,
+    /// How many iterations they have in all, for every iteration of the search; at least 0,
+    pub further_per_iteration: f64,
+    /// and how many at least.
+    pub least_further_iterations: u64,
+    /// How many of their plans are made shorter like the one that was found: those with the fewest steps, if fewer than that has.
+    pub further_retraced: usize,
     /// Extensions that draw manipulations anew, for every step of the plan that was found.
     pub draws_per_step: usize,
     /// More of them, for every iteration of the search; at least 0.
@@ -48,15 +59,37 @@ pub struct ImproveOptions {
 
 impl Default for ImproveOptions {
     fn default() -> Self {
-        Self { draws_per_step: 3, draws_per_iteration: 0.5, care_rounds: 3, draws_per_round: 24, shortcuts_per_step: 1 }
+        Self {
+            further_trees: 6,
+            further_per_iteration: 2.0,
+            least_further_iterations: 128,
+            further_retraced: 1,
+            draws_per_step: 3,
+            draws_per_iteration: 0.5,
+            care_rounds: 3,
+            draws_per_round: 24,
+            shortcuts_per_step: 1,
+        }
     }
+}
+
+/// So many for each of so many, rounded down.
+fn share(each: f64, of: u64) -> u64 {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and saturates")]
+    let share = (each * of as f64).max(0.0) as u64;
+    share
 }
 
 impl ImproveOptions {
     fn draws(&self, steps: usize, iterations: u64) -> usize {
-        let more = (self.draws_per_iteration * iterations as f64).max(0.0);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and saturates")]
-        self.draws_per_step.saturating_mul(steps).saturating_add(more as usize)
+        let more = usize::try_from(share(self.draws_per_iteration, iterations)).unwrap_or(usize::MAX);
+        self.draws_per_step.saturating_mul(steps).saturating_add(more)
+    }
+
+    /// What is done for further plans after a search of so many iterations.
+    pub(crate) fn further(&self, iterations: u64) -> Effort {
+        let shared = share(self.further_per_iteration, iterations);
+        Effort { trees: self.further_trees, iterations: shared.max(self.least_further_iterations) }
     }
 }
 

@@ -3,12 +3,15 @@
 //! | stage | what it does | file |
 //! |---|---|---|
 //! | retrace | the same manipulations without what does not lead to the goal | [`shorten`](crate::shorten) |
+//! | further trees | other plans to the goal, beside the one that was found | `search/further` |
 //! | improve | less time to carry it out, all motions judged | [`mod@improve`](crate::improve) |
 //! | mend | motions that were taken as free are judged; from one that is blocked the plan goes on another way | [`shorten`](crate::shorten) |
 //! | lazy validation | what was found is judged as it is | [`validate_steps`](crate::lazy_validation::validate_steps) |
 //! | prove | the verifier replays it | [`verify`](crate::verify) |
 //!
 //! The first stage that ends in a plan which the verifier accepts is the last one.
+
+use rand::Rng;
 
 use crate::budget::{Interrupt, Stop};
 use crate::domain::Domain;
@@ -17,7 +20,7 @@ use crate::improve::improve;
 use crate::lazy_validation::{NotValidated, validate_steps};
 use crate::plan::Plan;
 use crate::random::{Purpose, stream};
-use crate::search::Strategy;
+use crate::search::{Strategy, further_plans};
 use crate::shorten::{mended, retraced};
 use crate::verify::{Refusal, Solution};
 
@@ -47,7 +50,8 @@ impl<D: Domain> Pipeline<'_, D> {
         let rng = &mut stream(seed, attempt, iteration, Purpose::Shorten);
         let options = self.strategy.shorten;
         let short = retraced(&self.extender, found, options, rng);
-        let known: Vec<_> = short.iter().chain([found]).collect();
+        let further = self.further(found, rng);
+        let known: Vec<_> = short.iter().chain([found]).chain(&further).collect();
         if let Some(better) = self.improved(&known) {
             return Ok(better);
         }
@@ -68,6 +72,23 @@ impl<D: Domain> Pipeline<'_, D> {
         let steps = validate_steps(&self.extender, found.start(), found.steps().iter().cloned(), rng);
         let steps = steps.map_err(Unproved::NotValidated)?;
         self.proved(Plan::new(found.start().clone(), steps)).map_err(Unproved::Refused)
+    }
+
+    /// Plans of further trees, of which the shortest is made shorter still; none where nothing is improved.
+    fn further(&self, found: &Plan<D>, rng: &mut dyn Rng) -> Vec<Plan<D>> {
+        let Some(improvement) = self.strategy.improve.as_ref().filter(|_| !self.is_part) else { return Vec::new() };
+        let effort = improvement.options.further(self.key.2);
+        let Extender { problem, interrupt, .. } = self.extender;
+        let mut plans = further_plans(problem, self.strategy, self.key, effort, interrupt);
+        plans.sort_by_key(|plan| plan.steps().len());
+        // What is longer than the plan that was found would hardly become shorter than what that plan became.
+        let short = plans.iter_mut().take_while(|plan| plan.steps().len() < found.steps().len());
+        for plan in short.take(improvement.options.further_retraced) {
+            if let Some(shorter) = retraced(&self.extender, plan, self.strategy.shorten, rng) {
+                *plan = shorter;
+            }
+        }
+        plans
     }
 
     /// A plan better than those that are known that the verifier accepts, if that is wanted and there is time.

@@ -22,6 +22,8 @@ pub enum Purpose {
     Goal,
     /// Looking for a plan that takes less time.
     Improve,
+    /// Seeds of further trees.
+    Further,
 }
 
 /// The generator for one purpose in one iteration of one attempt.

@@ -30,10 +30,12 @@ use crate::verify::{Refusal, Solution};
 
 mod algorithm;
 pub mod connect;
+mod further;
 pub mod hierarchical;
 pub(crate) mod part;
 
 pub use algorithm::{Algorithm, Planner, Start};
+pub(crate) use further::{Effort, further_plans};
 pub use part::Part;
 
 /// The parts of the search that are variants of one trait each.
@@ -183,16 +185,8 @@ impl<'p, D: Domain> Darrt<'p, D> {
 
     /// Extends node `t` towards `s`, and takes in what is reached.
     fn grow(&mut self, t: NodeId, s: &PartialState<D>) -> Grown<D> {
-        let choose = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Extend);
-        let from = self.tree.node(t).map_or(self.problem.start(), |node| &node.state);
-        let extension = self.extender().extend(from, s, choose);
-        let m = self.problem.domain();
-        if let (Some(learner), Some(_)) = (&mut self.learner, &extension.blame) {
-            learner.learn_block(m, extension.reached.last().map_or(from, |reached| &reached.state), s);
-        }
+        let extension = self.extend(t, s);
         let (is_met, buckets) = (extension.is_met, extension.buckets.clone());
-        self.tree.penalise(t, self.strategy.try_penalty_m);
-        self.extended = self.tree.births().get(t.index()).copied();
         let step = self.absorb(t, extension);
         self.accounts.count(&buckets, step.added, is_met, step.blame.as_ref());
         if let Some((removed, blame)) = &step.withdrawn {
@@ -200,6 +194,20 @@ impl<'p, D: Domain> Darrt<'p, D> {
         }
         let last = if step.added > 0 { self.tree.last() } else { t };
         Grown { step, last, is_met }
+    }
+
+    /// EXTENDTOWARDS of Algorithm 1 from node `t`; what is reached is not in the tree yet.
+    fn extend(&mut self, t: NodeId, s: &PartialState<D>) -> Extension<D> {
+        let choose = &mut stream(self.seed, self.attempt, self.iteration, Purpose::Extend);
+        let from = self.tree.node(t).map_or(self.problem.start(), |node| &node.state);
+        let extension = self.extender().extend(from, s, choose);
+        let m = self.problem.domain();
+        if let (Some(learner), Some(_)) = (&mut self.learner, &extension.blame) {
+            learner.learn_block(m, extension.reached.last().map_or(from, |reached| &reached.state), s);
+        }
+        self.tree.penalise(t, self.strategy.try_penalty_m);
+        self.extended = self.tree.births().get(t.index()).copied();
+        extension
     }
 
     /// The empty plan, if the start lies in the goal and the verifier agrees.

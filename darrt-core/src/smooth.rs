@@ -56,6 +56,7 @@ pub fn smooth<D: Domain>(
         has_gained: false,
     };
     smoother.timed_steps = plan.steps().iter().map(|step| smoother.timed_step(step.clone())).collect();
+    smoother.drop_loops();
     smoother.drop_detours(rng);
     smoother.cut_corners(rng);
     let Smoother { timed_steps, has_gained, .. } = smoother;
@@ -161,6 +162,32 @@ impl<D: Domain> Smoother<'_, D> {
         let spliced = Spliced::instance(sections.clone(), &like.instance)?;
         let step = Step { instance: Arc::new(spliced), until: 1.0, primitive: like.primitive };
         Some(self.timed(step, sections))
+    }
+
+    /// Leaves out what ends where it began: an approach and the retreat from it. Costs no attempt.
+    fn drop_loops(&mut self) {
+        let m = self.extender.problem.domain();
+        let states: Vec<_> = (0..=self.timed_steps.len()).map(|i| self.state_before(i)).collect();
+        let end = self.timed_steps.len();
+        let is_as = |here: &State<D>, later: usize| {
+            states.get(later).is_some_and(|there| {
+                let is_alike = here.robot == there.robot && here.objects == there.objects;
+                is_alike && if later == end { self.is_goal(here) } else { m.may_go_on(&here.mode, &there.mode) }
+            })
+        };
+        let (mut kept, mut at) = (Vec::new(), 0);
+        while let (Some(timed_step), Some(here)) = (self.timed_steps.get(at), states.get(at)) {
+            if let Some(later) = (at + 1..=end).rev().find(|later| is_as(here, *later)) {
+                at = later;
+            } else {
+                kept.push(timed_step.clone());
+                at += 1;
+            }
+        }
+        if kept.len() < end {
+            self.timed_steps = self.woven(kept.into_iter());
+            self.has_gained = true;
+        }
     }
 
     /// Between the ends of steps at which the objects stand alike, or within one transfer; the farthest apart first. Also

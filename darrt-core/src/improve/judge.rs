@@ -147,7 +147,10 @@ impl<D: Domain> Roadmap<'_, D> {
         let Some(exit) = self.known.get(a).map(|known| known.exit.clone()) else { return };
         let Some(link) = self.link_of(a, b) else { return };
         let (steps, blocked) = (link.steps.clone().unwrap_or_default(), link.blocked.clone());
-        match self.around(exit, steps, &blocked, rng) {
+        let around = self.around(exit, steps, &blocked, rng);
+        let leaf = self.known.get(a).map(|known| known.leaves()[1]);
+        self.ways_around.count(leaf, around.is_some());
+        match around {
             Some((seconds, careless_s, steps)) => {
                 let seconds = seconds + self.arrival_s(a, b);
                 if let Some(link) = self.link_mut(a, b) {
@@ -189,10 +192,15 @@ impl<D: Domain> Roadmap<'_, D> {
     /// A way from the exit of `a` to the entry of `b`.
     fn way(&self, a: Id, b: Id, rng: &mut dyn Rng) -> Option<Vec<Step<D>>> {
         let (a, b) = (self.known.get(a)?, self.known.get(b)?);
-        if self.is_there(&a.exit, &b.entry) {
+        if self.is_there(&a.exit, &b.entry) || (b.is_arrival && self.is_goal(&a.exit)) {
             return Some(Vec::new());
         }
-        let reached = self.extender.extend(&a.exit, &self.target(&b.entry), rng).reached;
+        let mut reached = self.extender.extend(&a.exit, &self.target(&b.entry), rng).reached;
+        // Nothing comes behind an arrival: any state of the goal will do.
+        if let Some(end) = reached.iter().position(|reached| b.is_arrival && self.is_goal(&reached.state)) {
+            reached.truncate(end + 1);
+            return Some(joined(reached));
+        }
         let is_there = reached.last().is_some_and(|last| self.is_there(&last.state, &b.entry));
         is_there.then(|| joined(reached))
     }

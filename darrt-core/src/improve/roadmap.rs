@@ -17,14 +17,8 @@ use crate::extend::Extender;
 use crate::plan::Step;
 use crate::state::State;
 
+use super::experience::{Experience, WaysAround};
 use super::pieces::{is_one_leaf, pieces, states};
-
-/// How many times as long as they seem ways are taken to be before any has been looked at.
-const PRIOR_RATIO: f64 = 2.0;
-/// How many times as long a way around takes as the straight one that is blocked.
-const PRIOR_AROUND: f64 = 2.5;
-/// As if so many seconds had been seen to take so many times as long.
-const PRIOR_S: f64 = 20.0;
 
 /// What is known of whether something is free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,28 +67,6 @@ pub(super) struct Link<D: Domain> {
     pub(super) blocked: Vec<bool>,
 }
 
-/// How much more something takes than it seems, as far as has been seen.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Experience {
-    seems_s: f64,
-    takes_s: f64,
-}
-
-impl Experience {
-    fn prior(ratio: f64) -> Self {
-        Self { seems_s: PRIOR_S, takes_s: ratio * PRIOR_S }
-    }
-
-    pub(super) fn learn(&mut self, seems_s: f64, takes_s: f64) {
-        self.seems_s += seems_s;
-        self.takes_s += takes_s;
-    }
-
-    pub(super) fn ratio(&self) -> f64 {
-        self.takes_s / self.seems_s
-    }
-}
-
 /// An entry of the queue of [`Roadmap::costs`]: the cheapest is the greatest, of equal ones that of the lowest index.
 struct Reached {
     seconds: f64,
@@ -134,6 +106,8 @@ pub(super) struct Roadmap<'a, D: Domain> {
     pub(super) around: Experience,
     /// Of all ways.
     pub(super) any: Experience,
+    /// Of what is supposed.
+    pub(super) ways_around: WaysAround,
 }
 
 impl<D: Domain> Manipulation<D> {
@@ -146,9 +120,10 @@ impl<D: Domain> Manipulation<D> {
 impl<'a, D: Domain> Roadmap<'a, D> {
     /// Only the start.
     pub(super) fn new(extender: Extender<'a, D>, cost: &'a dyn ExecutionCost<D>, start: &State<D>) -> Self {
-        let (around, any) = (Experience::prior(PRIOR_AROUND), Experience::prior(PRIOR_RATIO));
+        let (around, any) = (Experience::of_ways_around(), Experience::of_ways());
         let (known, leaves, tries) = (Vec::new(), Vec::new(), BTreeMap::new());
-        let mut roadmap = Self { extender, cost, known, leaves, tries, around, any };
+        let ways_around = WaysAround::default();
+        let mut roadmap = Self { extender, cost, known, leaves, tries, around, any, ways_around };
         let id = roadmap.add(start.clone(), Vec::new(), start.clone());
         if let Some(begin) = roadmap.known.get_mut(id) {
             begin.verdict = Verdict::Free;
@@ -223,6 +198,8 @@ impl<'a, D: Domain> Roadmap<'a, D> {
         let guess = |to: Id, from: &State<D>, (at, end): (&State<D>, &State<D>)| {
             let m = self.extender.problem.domain();
             let seconds = self.any.ratio() * self.cost.between(m, from, at) + self.cost.arrival(m, from, at, end);
+            // To arrive the robot need not go where it did on another plan.
+            let seconds = if self.known.get(to).is_some_and(|next| next.is_arrival) { 0.0 } else { seconds };
             Link { to, seconds, careless_s: 0.0, verdict: Verdict::Open, steps: None, blocked: Vec::new() }
         };
         let behind = self.known.iter().enumerate().skip(1).filter(|(_, next)| next.begins_on == ends_on);
@@ -275,7 +252,8 @@ impl<'a, D: Domain> Roadmap<'a, D> {
     }
 
     /// By vertex: the seconds until its exit on the cheapest chain from the start over what is not blocked, or `certain`: over
-    /// what is free; and the vertex before it. Infinite where there is none.
+    /// what is free; and the vertex before it. Infinite where there is none. What is only supposed counts the more, the less
+    /// often ways around were found: else one after the other is looked for, in vain, while a plan that is free waits.
     pub(super) fn costs(&self, certain: bool) -> Vec<(f64, Id)> {
         let may = |verdict: Verdict| verdict == Verdict::Free || (!certain && verdict != Verdict::Blocked);
         let mut best = vec![(f64::INFINITY, START); self.known.len()];
@@ -288,9 +266,11 @@ impl<'a, D: Domain> Roadmap<'a, D> {
                 continue;
             }
             let Some(here) = self.known.get(id) else { continue };
+            let here_chance = self.ways_around.chance(here.ends_on);
             for link in here.links.iter().filter(|link| may(link.verdict)) {
                 let Some(next) = self.known.get(link.to).filter(|next| may(next.verdict)) else { continue };
-                let through = seconds + link.seconds + next.seconds;
+                let chance = if link.verdict == Verdict::Supposed { here_chance } else { 1.0 };
+                let through = seconds + link.seconds / chance + next.seconds;
                 if let Some(slot) = best.get_mut(link.to)
                     && through < slot.0
                 {

@@ -178,3 +178,25 @@ fn a_planner_that_improves_is_a_planner() {
         }
     }
 }
+
+#[test]
+fn plans_of_further_trees_make_better_plans_and_the_search_no_longer() {
+    let problem = problems::four_pucks().unwrap();
+    let planned = |further_trees, seed| {
+        // Nothing is drawn anew, which would make good what one tree missed.
+        let with = improvement(0, 0);
+        let options = ImproveOptions { further_trees, draws_per_iteration: 0.0, ..with.options };
+        let strategy = Strategy { improve: Some(Improvement { options, ..with }), ..paper_strategy().unwrap() };
+        let outcome = solve(&problem, &strategy, &self::options(seed, 5000), &mut Silent);
+        (seconds(&problem, outcome.solution.unwrap().plan()), outcome.iterations)
+    };
+    let mut took_s = [0.0; 2];
+    for seed in 0..12 {
+        let ((alone_s, iterations), (beside_s, again)) = (planned(0, seed), planned(6, seed));
+        assert_eq!(iterations, again, "the search is the same");
+        assert_eq!(planned(6, seed).0.to_bits(), beside_s.to_bits(), "same seed, same plan");
+        took_s[0] += alone_s;
+        took_s[1] += beside_s;
+    }
+    assert!(took_s[1] < 0.97 * took_s[0], "{took_s:?}");
+}

@@ -99,6 +99,20 @@ fn labels(plan: &Plan<World>) -> Vec<&'static str> {
 }
 
 #[test]
+fn what_ends_where_it_began_is_left_out_without_an_attempt() {
+    let floor = Setup::new([4.0, 3.0], 0.15).robot_at([0.5, 1.5]).puck("red", 0.12, [1.2, 1.5]);
+    let problem = floor.puck_goal(0, [3.0, 1.5]).problem().unwrap();
+    let m = problem.domain();
+    let (there, back) = (robot(m, [0.5, 2.5]), robot(m, [0.5, 1.5]));
+    let straight = by_hand(&problem, &[puck(m, 0, [3.0, 1.5])]);
+    let roundabout = by_hand(&problem, &[there, back, puck(m, 0, [3.0, 1.5])]);
+    assert_eq!(labels(&roundabout).len(), labels(&straight).len() + 2);
+    assert_eq!(labels(&smoothed(&problem, &roundabout, 0)), labels(&straight));
+    let nothing = smooth(&extender(&problem, &EAGER), &cost(), &straight, 0, &mut rng(1));
+    assert!(nothing.is_none(), "{nothing:?}");
+}
+
+#[test]
 fn a_puck_is_not_pushed_to_and_fro() {
     // The blue one is pushed before, the green one afterwards; the red one comes back to where it was.
     let floor = Setup::new([4.0, 3.0], 0.15).robot_at([0.5, 1.5]).puck("red", 0.12, [1.2, 1.5]);
@@ -210,6 +224,7 @@ fn no_effort_no_plan_and_none_when_nobody_waits() {
 fn smoothing(extend: ExtendOptions, attempts: usize) -> Strategy<World> {
     let extensions = if extend.defer { 50 } else { 0 };
     let options = ImproveOptions {
+        further_trees: 0,
         draws_per_step: 0,
         draws_per_iteration: 0.0,
         shortcuts_per_step: attempts,
