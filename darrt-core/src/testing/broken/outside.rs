@@ -15,6 +15,7 @@ mod strangers;
 mod validities;
 mod verifiers;
 mod ways;
+mod ways_in;
 mod wholes;
 
 pub(super) fn cases() -> Vec<Case> {
@@ -30,6 +31,7 @@ pub(super) fn cases() -> Vec<Case> {
         wholes::cases(),
         strangers::cases(),
         ways::cases(),
+        ways_in::cases(),
         measures::cases(),
         held::cases(),
     ]
