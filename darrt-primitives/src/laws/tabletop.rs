@@ -49,8 +49,7 @@ pub const MODES: &str = "tabletop.modes: the mode changes only by legal transiti
 pub const EXEMPT: &str =
     "tabletop.exempt: an instance exempts only what the hand stands at or holds: exemptions end with the instance";
 /// Straight lines.
-pub const STRAIGHT: &str =
-    "tabletop.straight: a Straight-Line-Arm-Transit, and what else has such a contract, moves the hand on a line and does not turn it";
+pub const STRAIGHT: &str = "tabletop.straight: a Straight-Line-Arm-Transit, and what else has such a contract, moves the hand on a line and does not turn it";
 /// Retreat.
 pub const RETREAT: &str =
     "tabletop.retreat: the hand leaves what it stands at straight back along its own axis, and nothing else moves";

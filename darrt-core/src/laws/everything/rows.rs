@@ -29,10 +29,19 @@ pub(super) struct Tally {
     pub(super) unknown: AtomicU64,
     /// Useful, and found a way, by what is still to be done.
     pub(super) kinds: [[AtomicU64; 2]; KINDS],
+    /// The same for a single object that is to be moved, by its index.
+    pub(super) objects: [[AtomicU64; 2]; OBJECTS],
+    /// Ways of which it was seen how far they are free, and those that are free to their ends, by what is still to be done.
+    pub(super) walks: [[AtomicU64; 2]; KINDS],
+    /// Ways on which the one component that the target names has moved, and those that ended there.
+    pub(super) arrived: [AtomicU64; 2],
 }
 
 /// What may still be to be done: something for the robot, for an object; and whether the mode is still that of the start.
 pub(super) const KINDS: usize = 8;
+
+/// Of so many objects it is counted which of them find a way.
+pub(super) const OBJECTS: usize = 32;
 
 impl Tally {
     pub(super) fn count(which: &AtomicU64) {

@@ -107,7 +107,10 @@ fn target<D: Domain>(m: &D, from: &State<D>, rng: &mut Stream) -> PartialState<D
     if count == 0 || rng.random_bool(0.3) {
         return target.with_robot(m, there.robot);
     }
-    let [id, other] = [(); 2].map(|()| ObjectId::new(rng.random_range(0..count)));
+    let id = rng.random_range(0..count);
+    // Another one, if there is any.
+    let other = ObjectId::new((id + rng.random_range(1..count.max(2))) % count);
+    let id = ObjectId::new(id);
     let share = if rng.random_bool(0.5) { rng.random_range(0.0..0.2) } else { 1.0 };
     let (Some(space), Some(near), Some(far)) = (m.objects().get(id.index()), from.object(other), there.object(id))
     else {

@@ -3,6 +3,7 @@
 
 use super::Case;
 
+mod arrivals;
 mod domains;
 mod goals;
 mod hangs;
@@ -32,6 +33,7 @@ pub(super) fn cases() -> Vec<Case> {
         strangers::cases(),
         ways::cases(),
         ways_in::cases(),
+        arrivals::cases(),
         measures::cases(),
         held::cases(),
     ]

@@ -35,7 +35,8 @@ pub fn check_contracts<M: Manipulator>(
     let mut here = from.clone();
     for instance in instances {
         if let Some((_, contract)) = contracts.iter().find(|(id, _)| *id == instance.primitive) {
-            let call = || format!("check_contracts(&m, &{contracts:?}, &[{instance:?}], &{here:?}, &{ts:?}, &{claims:?})");
+            let call =
+                || format!("check_contracts(&m, &{contracts:?}, &[{instance:?}], &{here:?}, &{ts:?}, &{claims:?})");
             Trial::new(m, instance, &here, ts, claims)
                 .keeps(contract)
                 .map_err(|broken| broken.of(format_args!("instance {:?}", instance.primitive)).replayed_by(call))?;

@@ -67,7 +67,11 @@ pub(super) fn cases() -> Vec<Case> {
         case("the last joint first", "joints are numbered from the hand", check::<REVERSED>),
         case("deaf to the last joint", "a joint was added, but not to the comparison", check::<LAST_IS_DEAF>),
         case("one slot short", "the first joint cannot be written to", check::<ONE_SLOT_SHORT>),
-        case("zeros that are ones", "zero where the joints are homed, not where they are counted from", check::<AT_ONE>),
+        case(
+            "zeros that are ones",
+            "zero where the joints are homed, not where they are counted from",
+            check::<AT_ONE>,
+        ),
         case("nearly equal", "compares within a hundredth", check::<NEARLY_EQUAL>),
     ]
 }

@@ -208,7 +208,7 @@ fn the_planner<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
         }
         let iterations = ATTEMPT * world.subjects.effort.iterations;
         let shown = usize::try_from(world.subjects.effort.cases / INTO).unwrap_or(usize::MAX);
-        verifier::each_primitive::check(&problem, &strategy, world.seed, iterations, shown)
+        verifier::check_ways(&problem, &strategy, world.seed, iterations, shown)
     };
     let laws = planner::LAWS.len() + verifier::LAWS.len();
     let cases = (world.subjects.effort.cases / 32).max(1);

@@ -1,12 +1,14 @@
 //! Verifiers that let plans into something, or refuse what one primitive does.
 
+use std::sync::Arc;
+
 use super::super::{Case, seed};
 use crate::goal::Goal;
-use crate::laws::everything::Effort;
 use crate::laws::verifier::{ACCEPTS, WAYS_IN};
-use crate::laws::{Broken, Subjects, check_everything};
+use crate::laws::{Broken, check_ways};
 use crate::motion::Instance;
 use crate::plan::Plan;
+use crate::problem::Problem;
 use crate::state::{ComponentSet, State};
 use crate::testing::puck::{Judge, Obstacle, Oracle, Outline, PuckWorld, Setup, paper_strategy};
 use crate::validity::{Blame, BlockKind, FreePrefix, Validity};
@@ -64,13 +66,11 @@ fn judged<V: Verifier<PuckWorld> + 'static>(verifier: impl FnOnce(Vec<Obstacle>)
         obstacle("wall", Outline::Rectangle { lower: LOWER, upper: UPPER }),
         obstacle("pillar", Outline::Disc { centre: [1.0, 2.4], radius_m: 0.25 }),
     ];
-    // Little of all else: only what is done with the verifier matters here.
-    let effort = Effort { cases: 128, calls: 16, apart_ms: 0, seed: seed(), ..Effort::default() };
-    let subjects = Subjects::of(&problem).strategy(paper_strategy().map_err(malformed)?).verifier(verifier(obstacles));
-    match check_everything(problem.shared_domain(), subjects.effort(effort).only("planner and verifier", None)) {
-        Ok(_) => Ok(()),
-        Err(report) => report.broken().next().map_or(Ok(()), |broken| Err(broken.clone())),
-    }
+    let (goal, primitives, validity, _) = problem.shared_parts();
+    let parts = (goal, primitives, validity, Arc::new(verifier(obstacles)) as Arc<dyn Verifier<PuckWorld>>);
+    let problem = Problem::of_shared(problem.shared_domain(), problem.start().clone(), parts);
+    // What `check_everything` asks for at its default effort.
+    check_ways(&problem.map_err(malformed)?, &paper_strategy().map_err(malformed)?, seed(), 180, 192)
 }
 
 fn lenient(overlooks: Overlooks) -> Result<(), Broken> {
@@ -92,6 +92,12 @@ pub(super) fn cases() -> Vec<Case> {
         }),
         case("no hands allowed", "refuses every plan with something in the hand", ACCEPTS, || {
             picky(|m, plan, step| plan.at(m, step, 1.0).is_some_and(|state| state.mode.held().is_none()))
+        }),
+        case("keeps its distance", "a touch is an overlap: of a millimetre, which was to be allowed", ACCEPTS, || {
+            picky(|m, plan, step| {
+                let ends = plan.at(m, step, 1.0);
+                ends.is_some_and(|state| m.ids().all(|id| m.gap(&state, id) > 1e-3))
+            })
         }),
         case("no pushes allowed", "takes the puck that is pushed for one that moves by itself", ACCEPTS, || {
             picky(|m, plan, step| {
