@@ -274,9 +274,10 @@ fn leaves<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream, is_robot: bool) -> 
     if is_inside || edge == *start {
         return None;
     }
-    let by = value(m, &there, component, index)? - value(m, start, component, index)?;
-    let change: Change<D> = Arc::new(move |m, t, state| shift(m, state, component, index, by * bump(t)));
-    forge.changed(step, |length| 10.0 * (length + 2.0 * by.abs()), change)
+    let beyond = value(m, &there, component, index)?;
+    let far_m = (beyond - value(m, start, component, index)?).abs();
+    let change: Change<D> = Arc::new(move |m, t, state| bring(m, state, component, index, (beyond, bump(t))));
+    forge.changed(step, |length| 10.0 * (length + 2.0 * far_m), change)
 }
 
 fn value<D: Domain>(m: &D, state: &State<D>, component: ComponentId, index: usize) -> Option<f64> {
@@ -287,13 +288,15 @@ fn value<D: Domain>(m: &D, state: &State<D>, component: ComponentId, index: usiz
     all.get(index).copied()
 }
 
-fn shift<D: Domain>(m: &D, state: &mut State<D>, component: ComponentId, index: usize, by: f64) {
-    let Some(at) = value(m, state, component, index) else { return };
+/// Brings one number by a share of the way to what it should be.
+fn bring<D: Domain>(m: &D, state: &mut State<D>, component: ComponentId, index: usize, (wanted, share): (f64, f64)) {
+    let Some(here) = value(m, state, component, index) else { return };
+    let at = here + (wanted - here) * share;
     match component {
-        ComponentId::Robot => state.robot = crate::laws::feed::with(m.robot(), &state.robot, index, at + by),
+        ComponentId::Robot => state.robot = crate::laws::feed::with(m.robot(), &state.robot, index, at),
         ComponentId::Object(id) => {
             if let (Some(space), Some(slot)) = (m.objects().get(id.index()), state.objects.get_mut(id.index())) {
-                *slot = crate::laws::feed::with(space, slot, index, at + by);
+                *slot = crate::laws::feed::with(space, slot, index, at);
             }
         }
     }

@@ -15,6 +15,12 @@ fn values(count: usize, vector: u32) -> Vec<f64> {
 /// # Errors
 /// [`VECTOR`] with the function that is at fault.
 pub fn check_joint_vector<J: JointVector>(count: usize) -> Result<(), Broken> {
+    check::<J>(count).map_err(|broken| {
+        broken.replayed_by(|| format!("check_joint_vector::<{}>({count})", std::any::type_name::<J>()))
+    })
+}
+
+fn check<J: JointVector>(count: usize) -> Result<(), Broken> {
     let made = |of: &[f64]| {
         let made = J::from_values(of);
         made.ok_or_else(|| Broken::new(VECTOR, format!("none of {of:?}"), "a vector").of("from_values"))

@@ -30,7 +30,7 @@ pub fn check_contracts<M: Manipulator>(
     for (id, contract) in contracts {
         let flaw = contract.flaw();
         ensure(SOUND, flaw.is_none(), || flaw.unwrap_or_default().to_owned(), "a contract that can be kept")
-            .map_err(|broken| broken.of(format_args!("{id:?}")))?;
+            .map_err(|broken| broken.of(id.name()).replayed_by(|| format!("{contract:?}.flaw()")))?;
     }
     let mut here = from.clone();
     for instance in instances {
