@@ -21,24 +21,13 @@ fn is_excused(m: &World, from: &WorldState, to: &PartialState<World>, end: &Worl
 
 #[test]
 fn everything_of_a_problem_keeps_its_laws() -> Result<(), Box<Report>> {
-    println!("{}", checked(0)?);
-    Ok(())
-}
-
-#[test]
-#[ignore = "minutes: no law fails by chance"]
-fn everything_keeps_its_laws_whatever_the_seed() -> Result<(), Box<Report>> {
-    (1..=20).try_for_each(|seed| checked(seed).map(|report| println!("{report}")))
-}
-
-fn checked(seed: u64) -> Result<Report, Box<Report>> {
     let name = "simple-plate";
     let problem = problem(name);
     let oracle = SceneOracle::new(&obstacles(name));
     // Places on tables are drawn on purpose; turns of a plate about its own axis are free.
     let spaces = SpaceClaims { hears_all: false, ..SpaceClaims::default() };
     let validity = ValidityClaims { tight_m: 0.21, same_names: false, between: 8, anywhere: 1 };
-    let effort = Effort { cases: 24, calls: 200, iterations: 12, seed, ..Effort::default() };
+    let effort = Effort { cases: 24, calls: 200, iterations: 12, ..Effort::default() };
     let subjects = Subjects::of(&problem)
         .strategy(strategy(&darrt_pr2::registry(), &PlanRequest::new(file(name), 0)).unwrap())
         .oracle(move |m, state| oracle.check(m, state, &Contacts::default()).is_ok())
@@ -48,5 +37,6 @@ fn checked(seed: u64) -> Result<Report, Box<Report>> {
         .samples_in_part()
         .validity_claims(validity)
         .effort(effort);
-    check_everything(problem.shared_domain(), subjects)
+    println!("{}", check_everything(problem.shared_domain(), subjects)?);
+    Ok(())
 }
