@@ -38,7 +38,7 @@ pub fn check_contracts<M: Manipulator>(
             let call =
                 || format!("check_contracts(&m, &{contracts:?}, &[{instance:?}], &{here:?}, &{ts:?}, &{claims:?})");
             Trial::new(m, instance, &here, ts, claims)
-                .keeps(contract)
+                .keeps(*contract)
                 .map_err(|broken| broken.of(format_args!("instance {:?}", instance.primitive)).replayed_by(call))?;
         }
         instance.motion.at_into(m, 1.0, &mut here);
@@ -50,10 +50,10 @@ impl<M: Manipulator> Trial<'_, M> {
     /// If it is one of the standard primitives.
     pub(super) fn contract(&self) -> Result<(), Broken> {
         let known = STANDARD.iter().find(|(id, _)| *id == self.instance.primitive);
-        known.map_or(Ok(()), |(_, contract)| self.keeps(contract))
+        known.map_or(Ok(()), |(_, contract)| self.keeps(*contract))
     }
 
-    fn keeps(&self, contract: &Contract) -> Result<(), Broken> {
+    fn keeps(&self, contract: Contract) -> Result<(), Broken> {
         let states = || self.looks.iter().map(|look| (look.t, &look.state)).chain([(1.0, &self.end)]);
         for (t, state) in states() {
             let stays = match contract.moves {

@@ -98,55 +98,64 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
         }
         Ok(())
     };
-    let once = move |world: &World<D>, row: &mut Row| {
-        let found_in_cases = Tally::get(&tally.reached);
-        let calls = many_calls(world, index, &tally)?;
-        let [tried, hit, reached] = [&tally.tried, &tally.hit, &tally.reached].map(Tally::get);
-        row.cases = calls;
-        let unknown = Tally::get(&tally.unknown);
-        if unknown > 0 {
-            row.warn(format!("{unknown} propagations had instances of primitives that were not given"));
-        }
-        if hit == 0 {
-            row.warn(format!("`useful` was false in {tried} of {tried} calls"));
-        } else if reached == 0 {
-            row.warn(format!("`propagate` found no way in {hit} of {hit} calls in which it was useful"));
-        }
-        if hit >= MOST_IN_VAIN && reached == 0 {
-            let found = format!("no way in {hit} of {hit} calls");
-            return Err(Broken::new(FEASIBLE, found, "a way now and then, where it is useful").of(name));
-        }
-        for (kind, [useful, found]) in tally.kinds.iter().enumerate() {
-            let [useful, found] = [useful, found].map(Tally::get);
-            let text = || format!("no way in {useful} of {useful} calls {}", open(kind));
-            ensure(FEASIBLE, useful < MOST_IN_VAIN || found > 0, text, "a way now and then, where it is useful")
-                .map_err(|broken| broken.of(name))?;
-        }
-        let (mut walked, mut free) = (found_in_cases, Tally::get(&tally.free));
-        for (kind, [tried, kept]) in tally.walks.iter().enumerate() {
-            let [tried, kept] = [tried, kept].map(Tally::get);
-            (walked, free) = (walked + tried, free + kept);
-            if tried >= MOST_WALKS && kept == 0 {
-                row.warn(format!("blocked in {tried} of {tried} ways {}", open(kind)));
-            }
-        }
-        for (i, [useful, found]) in tally.objects.iter().enumerate() {
-            let useful = Tally::get(useful);
-            if useful >= MOST_IN_VAIN && reached > 0 && Tally::get(found) == 0 {
-                let object = world.m.component_name(ComponentId::Object(ObjectId::new(i)));
-                row.warn(format!("no way in {useful} of {useful} calls in which only {object} was to be moved"));
-            }
-        }
-        let [moved, arrived] = tally.arrived.each_ref().map(Tally::get);
-        if moved >= MOST_IN_VAIN && arrived == 0 {
-            row.warn(format!("what its target names moved on {moved} ways, and none of them ended there"));
-        }
-        let text = || format!("blocked in {walked} of {walked} propagations");
-        let is_known = world.subjects.validity.is_some() && walked >= MOST_BLOCKED;
-        ensure(FREE, !is_known || free > 0, text, "free now and then").map_err(|broken| broken.of(name))
-    };
+    let once = move |world: &World<D>, row: &mut Row| verdict(world, index, name, &tally, row);
     let laws = primitive::LAWS.len() + motion::LAWS.len();
     Some(Plan::new(name, laws, world.subjects.effort.cases, case).finally(once))
+}
+
+/// What all cases and calls together say.
+fn verdict<D: Domain>(
+    world: &World<D>,
+    index: usize,
+    name: &'static str,
+    tally: &Tally,
+    row: &mut Row,
+) -> Result<(), Broken> {
+    let found_in_cases = Tally::get(&tally.reached);
+    let calls = many_calls(world, index, tally)?;
+    let [tried, hit, reached] = [&tally.tried, &tally.hit, &tally.reached].map(Tally::get);
+    row.cases = calls;
+    let unknown = Tally::get(&tally.unknown);
+    if unknown > 0 {
+        row.warn(format!("{unknown} propagations had instances of primitives that were not given"));
+    }
+    if hit == 0 {
+        row.warn(format!("`useful` was false in {tried} of {tried} calls"));
+    } else if reached == 0 {
+        row.warn(format!("`propagate` found no way in {hit} of {hit} calls in which it was useful"));
+    }
+    if hit >= MOST_IN_VAIN && reached == 0 {
+        let found = format!("no way in {hit} of {hit} calls");
+        return Err(Broken::new(FEASIBLE, found, "a way now and then, where it is useful").of(name));
+    }
+    for (kind, [useful, found]) in tally.kinds.iter().enumerate() {
+        let [useful, found] = [useful, found].map(Tally::get);
+        let text = || format!("no way in {useful} of {useful} calls {}", open(kind));
+        ensure(FEASIBLE, useful < MOST_IN_VAIN || found > 0, text, "a way now and then, where it is useful")
+            .map_err(|broken| broken.of(name))?;
+    }
+    let (mut walked, mut free) = (found_in_cases, Tally::get(&tally.free));
+    for (kind, [tried, kept]) in tally.walks.iter().enumerate() {
+        let [tried, kept] = [tried, kept].map(Tally::get);
+        (walked, free) = (walked + tried, free + kept);
+        if tried >= MOST_WALKS && kept == 0 {
+            row.warn(format!("blocked in {tried} of {tried} ways {}", open(kind)));
+        }
+    }
+    for (i, [useful, found]) in tally.objects.iter().enumerate() {
+        let useful = Tally::get(useful);
+        if useful >= MOST_IN_VAIN && reached > 0 && Tally::get(found) == 0 {
+            let object = world.m.component_name(ComponentId::Object(ObjectId::new(i)));
+            row.warn(format!("no way in {useful} of {useful} calls in which only {object} was to be moved"));
+        }
+    }
+    let [moved, arrived] = tally.arrived.each_ref().map(Tally::get);
+    if moved >= MOST_IN_VAIN && arrived == 0 {
+        row.warn(format!("what its target names moved on {moved} ways, and none of them ended there"));
+    }
+    let text = || format!("blocked in {walked} of {walked} propagations");
+    let is_known = world.subjects.validity.is_some() && walked >= MOST_BLOCKED;
+    ensure(FREE, !is_known || free > 0, text, "free now and then").map_err(|broken| broken.of(name))
 }
 
 /// What is forgotten shows all along. For a moment the object may well be in the way: in the hand, of the robot's own base.
