@@ -11,7 +11,7 @@
 //! | [`Validity`](crate::validity::Validity) | [`check_validity`], [`check_by_oracle`], [`check_against_oracle`], [`check_enlarged`] | [`validity`] |
 //! | [`Goal`](crate::goal::Goal) | [`check_goal`] | [`goal`] |
 //! | [`Sampler`](crate::sample::Sampler) | [`check_sampler`], [`check_sampler_covers`], [`check_sampler_learns`] | [`sampler`] |
-//! | [`Verifier`](crate::verify::Verifier) | [`check_verifier`] | [`verifier`] |
+//! | [`Verifier`](crate::verify::Verifier) | [`check_verifier`], [`check_ways`] | [`verifier`] |
 //! | [`LocalRepair`](crate::local_repair::LocalRepair) | [`check_local_repair`] | [`local_repair`] |
 //! | [`ExecutionCost`](crate::cost::ExecutionCost) | [`check_cost`] | [`cost`] |
 //! | all of them together | [`check_planner`], [`check_accounts`], [`check_cancel`] | [`planner`] |
@@ -70,7 +70,7 @@ pub use primitive::{PrimitiveClaims, Tried, check_contacts, check_primitive, try
 pub use sampler::{check_sampler, check_sampler_covers, check_sampler_learns};
 pub use space::{SpaceClaims, check_component_space, check_covering, check_space_covers};
 pub use validity::{ValidityClaims, check_against_oracle, check_by_oracle, check_enlarged, check_validity};
-pub use verifier::{Judged, Tampered, check_verifier};
+pub use verifier::{Judged, Tampered, check_verifier, check_ways};
 pub use watch::{or_abandon, with_patience};
 
 /// A law that does not hold, with everything needed to see why and to see it again.

@@ -156,6 +156,10 @@ fn what_is_never_useful_is_warned_of_and_what_never_succeeds_is_broken() {
     assert!(report.warnings().any(|(row, text)| row == "Idle" && text.contains("was false in")), "{report}");
     let found = check(|all| all.primitives(primitives(Idle(true)))).unwrap_err();
     assert!(found.broken().any(|broken| broken.name() == "primitive.feasible"), "{found}");
+    // It shows behind all cases, and so it is shown again by the whole row, alone.
+    assert!(found.to_string().contains(".only(\"Idle\", None)"), "{found}");
+    let again = check(|all| all.primitives(primitives(Idle(true))).only("Idle", None)).unwrap_err();
+    assert!(again.rows.len() == 1 && again.broken().any(|broken| broken.name() == "primitive.feasible"), "{again}");
 }
 
 #[test]

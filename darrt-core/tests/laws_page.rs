@@ -25,7 +25,7 @@ fn the_page_lists_every_law_with_what_it_catches() {
         ),
         ("Goals: `check_goal`", laws::goal::LAWS),
         ("Samplers: `check_sampler`, `check_sampler_covers`", laws::sampler::LAWS),
-        ("Verifiers: `check_verifier`", laws::verifier::LAWS),
+        ("Verifiers: `check_verifier`, `check_ways`", laws::verifier::LAWS),
         ("Ways around: `check_local_repair`", laws::local_repair::LAWS),
         ("Costs: `check_cost`", laws::cost::LAWS),
         ("The planner: `check_planner`, `check_accounts`, `check_cancel`", laws::planner::LAWS),

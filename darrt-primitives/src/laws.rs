@@ -3,9 +3,10 @@
 //! | you have | call | the laws |
 //! |---|---|---|
 //! | a [`Manipulator`](crate::manipulator::Manipulator) | [`check_manipulator`], [`check_reaches`] | [`manipulator`] |
+//! | a [`JointVector`](crate::manipulator::JointVector) | [`check_joint_vector`]; by [`check_manipulator`] as well | [`manipulator`] |
 //! | a [`GraspFamily`](crate::grasp::GraspFamily) | [`check_grasps`] | [`grasp`] |
 //! | a Jacobian | [`check_jacobian`], [`check_chain`] | [`jacobian`] |
-//! | instances on a [`Tabletop`](crate::tabletop::Tabletop) | [`check_tabletop`], [`check_tabletop_instance`], [`check_finger_contacts`] | [`tabletop`] |
+//! | instances on a [`Tabletop`](crate::tabletop::Tabletop) | [`check_tabletop`], [`check_tabletop_instance`], [`check_finger_contacts`], [`check_contracts`] | [`tabletop`] |
 //!
 //! Each function takes concrete inputs and returns the first law that is broken, as a
 //! [`Broken`](darrt_core::laws::Broken) with the parameter, the two values and the call that shows it again. The
@@ -38,8 +39,10 @@ pub mod tabletop;
 
 pub use grasp::check_grasps;
 pub use jacobian::{check_chain, check_jacobian};
-pub use manipulator::{ManipulatorClaims, ReachClaims, check_manipulator, check_reaches};
-pub use tabletop::{TabletopClaims, body_travel, check_finger_contacts, check_tabletop, check_tabletop_instance};
+pub use manipulator::{ManipulatorClaims, ReachClaims, check_joint_vector, check_manipulator, check_reaches};
+pub use tabletop::{
+    TabletopClaims, body_travel, check_contracts, check_finger_contacts, check_tabletop, check_tabletop_instance,
+};
 
 /// Every law of this crate.
 pub fn all() -> impl Iterator<Item = &'static str> {

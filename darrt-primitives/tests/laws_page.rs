@@ -12,10 +12,10 @@ const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/laws.md");
 #[test]
 fn the_page_lists_every_law_with_what_it_catches() {
     let groups: [(&str, &[&'static str]); 4] = [
-        ("Robots: `check_manipulator`, `check_reaches`", laws::manipulator::LAWS),
+        ("Robots: `check_manipulator`, `check_reaches`, `check_joint_vector`", laws::manipulator::LAWS),
         ("Jacobians: `check_jacobian`, `check_chain`", laws::jacobian::LAWS),
         ("Grasps: `check_grasps`", laws::grasp::LAWS),
-        ("Instances at tables: `check_tabletop`, `check_finger_contacts`", laws::tabletop::LAWS),
+        ("Instances at tables: `check_tabletop`, `check_finger_contacts`, `check_contracts`", laws::tabletop::LAWS),
     ];
     let listed: usize = groups.iter().map(|(_, laws)| laws.len()).sum();
     assert_eq!(listed, laws::all().count());

@@ -37,7 +37,7 @@ fn noticed(effort: Effort) -> Option<String> {
     match check_everything(problem.shared_domain(), all) {
         Err(report) => Some(report.broken().next().map_or_else(String::new, |broken| broken.name().to_owned())),
         Ok(report) => {
-            let hints = ["false in", "no way", "refused every"];
+            let hints = ["false in", "no way", "refused every", "none of them ended there", "blocked in"];
             let warning = report.warnings().find(|(_, text)| hints.iter().any(|hint| text.contains(hint)));
             warning.map(|(subject, text)| format!("warning of {subject}: {text}"))
         }

@@ -76,7 +76,7 @@ pub fn check_planner<D: Domain>(
 }
 
 /// How much longer one iteration of the search, or the verification of one plan, may take than another call.
-const PATIENCE_FACTOR: f64 = 6.0;
+pub(super) const PATIENCE_FACTOR: f64 = 6.0;
 
 /// Breaks a plan in many ways, and shows what becomes of it to the verifier.
 fn judge<D: Domain>(problem: &Problem<D>, goal: &dyn Goal<D>, plan: &Plan<D>, seed: u64) -> Result<(), Broken> {

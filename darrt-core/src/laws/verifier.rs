@@ -18,7 +18,10 @@ use super::{Broken, ensure, equal};
 pub(in crate::laws) mod each_primitive;
 mod forge;
 mod motions;
+mod proposed;
 mod steps;
+
+pub use each_primitive::check_ways;
 
 /// Broken plans.
 pub const REFUSES: &str = "verifier.refuses: a good plan that was broken on purpose is refused";
@@ -33,10 +36,12 @@ pub const REFUSAL: &str =
 /// Measured clearances.
 pub const CLEARANCE: &str = "verifier.clearance: a clearance of an accepted plan is finite and not negative";
 /// Accepts.
-pub const ACCEPTS: &str = "verifier.accepts: of many ways that the search found free not all are refused at one of their steps, for the goal to be where each ends, nor are four plans to the goal of the problem all refused, nor all of six ways at the step of one primitive";
+pub const ACCEPTS: &str = "verifier.accepts: of many ways that the search found free not all are refused at one of their steps, for the goal to be where each ends, nor are four plans to the goal of the problem all refused, nor all of six ways at the step of one primitive, or all of thirty-two that end with one";
+/// Blocked proposals.
+pub const WAYS_IN: &str = "verifier.ways-in: a plan that goes on by what a primitive proposes until it is well inside of what blocks it, by 5 cm at least whichever way one looks, is refused";
 
 /// The laws of this file.
-pub const LAWS: &[&str] = &[REFUSES, STEADY, ITS_GOAL, REFUSAL, CLEARANCE, ACCEPTS];
+pub const LAWS: &[&str] = &[REFUSES, STEADY, ITS_GOAL, REFUSAL, CLEARANCE, ACCEPTS, WAYS_IN];
 
 /// How often each way is tried, at other steps and with other numbers.
 const TRIES: u64 = 3;

@@ -17,8 +17,10 @@ mod links;
 mod pairs;
 mod reaches;
 mod travel;
+mod vector;
 
 pub use reaches::{ReachClaims, check_reaches};
+pub use vector::check_joint_vector;
 
 /// Numbers of things.
 pub const COUNTS: &str = "manipulator.counts: there is one limit and one positive weight for every joint";
@@ -123,9 +125,12 @@ pub const INVERSE_VARIED: &str = "manipulator.inverse-varied: inverse of an arm 
 /// Steps.
 pub const NEAR_FINDS: &str =
     "manipulator.near-finds: of twelve short straight steps of the hand an arm of six joints or more can take one";
+/// Joint vectors.
+pub const VECTOR: &str = "manipulator.vector: a joint vector has the values that it is made of or written to, zeros where zeros are asked for, no other number of them, and is equal to itself and to none that differs";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
+    VECTOR,
     JOINTS,
     CENTRED,
     CLEAR,

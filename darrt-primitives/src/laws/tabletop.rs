@@ -20,6 +20,7 @@ mod modes;
 mod pushed;
 
 pub use contacts::check_finger_contacts;
+pub use contract::check_contracts;
 
 /// Held objects.
 pub const HELD_RIGID: &str = "tabletop.held-rigid: while an object is held, its pose in the tool frame is the grasp";
@@ -48,8 +49,7 @@ pub const MODES: &str = "tabletop.modes: the mode changes only by legal transiti
 pub const EXEMPT: &str =
     "tabletop.exempt: an instance exempts only what the hand stands at or holds: exemptions end with the instance";
 /// Straight lines.
-pub const STRAIGHT: &str =
-    "tabletop.straight: a Straight-Line-Arm-Transit moves the hand on a line and does not turn it";
+pub const STRAIGHT: &str = "tabletop.straight: a Straight-Line-Arm-Transit, and what else has such a contract, moves the hand on a line and does not turn it";
 /// Retreat.
 pub const RETREAT: &str =
     "tabletop.retreat: the hand leaves what it stands at straight back along its own axis, and nothing else moves";
@@ -67,14 +67,16 @@ pub const DECLARED: &str =
 pub const GAP: &str = "tabletop.gap: the fingers open between 0 and their widest gap";
 
 /// Contracts.
-pub const CONTRACT: &str = "tabletop.contract: an instance of one of the standard primitives keeps its contract: what of the robot moves, what is in the hand, and whether objects at rest move";
+pub const CONTRACT: &str = "tabletop.contract: an instance keeps the contract of its primitive: what of the robot moves, what is in the hand, whether objects at rest move, and whether the fingers may touch anything";
+/// Contracts themselves.
+pub const SOUND: &str = "tabletop.contract-sound: a contract does not contradict itself";
 /// Lifts.
 pub const TAKES: &str = "tabletop.takes: what is taken up moves, by a millimetre at least";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
     ONE_WAY, DECLARED, GAP, INSIDE, FINGERS, HELD_RIGID, STILL, SUPPORT, RAY, TURN, CONTACT, TOUCH, ATTACH, PICK_YAW,
-    RELEASE, MODES, EXEMPT, STRAIGHT, RETREAT, CONTRACT, TAKES,
+    RELEASE, MODES, EXEMPT, STRAIGHT, RETREAT, CONTRACT, SOUND, TAKES,
 ];
 
 /// How exactly instances keep to their lines.

@@ -20,6 +20,7 @@ mod limits;
 mod moments;
 mod pushes;
 mod robots;
+mod vectors;
 
 /// All broken implementors of this crate's traits.
 pub fn cases() -> Vec<Case> {
@@ -34,6 +35,7 @@ pub fn cases() -> Vec<Case> {
         grasps::cases(),
         hands::cases(),
         contracts::cases(),
+        vectors::cases(),
     ]
     .concat()
 }

@@ -28,7 +28,7 @@ pub struct Row {
     pub verdict: Verdict,
     /// What is no broken law, but should make one think.
     pub warnings: Vec<String>,
-    /// The case that shows the broken law.
+    /// The case that shows the broken law; `None` if it shows when all of them are seen together.
     pub case: Option<u64>,
 }
 
@@ -137,8 +137,9 @@ impl fmt::Display for Report {
         for row in &self.rows {
             if let Verdict::Broken(broken) = &row.verdict {
                 writeln!(f, "\n{}: {}", row.subject, shortened(&broken.to_string()))?;
-                if let Some(case) = row.case {
-                    writeln!(f, "  again:   .only({:?}, {case})", row.subject)?;
+                match row.case {
+                    Some(case) => writeln!(f, "  again:   .only({:?}, {case})", row.subject)?,
+                    None => writeln!(f, "  again:   .only({:?}, None)", row.subject)?,
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! The rows of the table: each subject in turn, on a thread of its own.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
 use rand::RngExt;
 
@@ -29,10 +29,19 @@ pub(super) struct Tally {
     pub(super) unknown: AtomicU64,
     /// Useful, and found a way, by what is still to be done.
     pub(super) kinds: [[AtomicU64; 2]; KINDS],
+    /// The same for a single object that is to be moved, by its index.
+    pub(super) objects: [[AtomicU64; 2]; OBJECTS],
+    /// Ways of which it was seen how far they are free, and those that are free to their ends, by what is still to be done.
+    pub(super) walks: [[AtomicU64; 2]; KINDS],
+    /// Ways on which the one component that the target names has moved, and those that ended there.
+    pub(super) arrived: [AtomicU64; 2],
 }
 
 /// What may still be to be done: something for the robot, for an object; and whether the mode is still that of the start.
 pub(super) const KINDS: usize = 8;
+
+/// Of so many objects it is counted which of them find a way.
+pub(super) const OBJECTS: usize = 32;
 
 impl Tally {
     pub(super) fn count(which: &AtomicU64) {
@@ -93,7 +102,7 @@ pub(super) fn all<D: Domain>(world: &Arc<World<D>>, report: &mut Report) {
             report.push(run(world, plan));
         }
     }
-    if world.subjects.effort.only.is_none() {
+    if world.subjects.effort.only.as_ref().is_none_or(|(subject, _)| subject == Answers::ROW) {
         report.push(Answers::again(world, early));
     }
 }
@@ -112,7 +121,11 @@ fn run<D: Domain>(world: &Arc<World<D>>, plan: Plan<D>) -> Row {
     row.cases = numbers.len() as u64;
     let (shared, now) = (Arc::clone(world), Arc::new(AtomicU64::new(0)));
     let current = Arc::clone(&now);
-    let (subject, is_replay) = (plan.subject.clone(), effort.only.is_some());
+    // A single case, not the whole row.
+    let is_replay = matches!(effort.only, Some((_, Some(_))));
+    let subject = plan.subject.clone();
+    let after = Arc::new(AtomicBool::new(false));
+    let is_after = Arc::clone(&after);
     let done = or_abandon(move || {
         for number in numbers {
             current.store(number, Relaxed);
@@ -121,6 +134,7 @@ fn run<D: Domain>(world: &Arc<World<D>>, plan: Plan<D>) -> Row {
         }
         let mut row = Row::new("", 0);
         if !is_replay {
+            is_after.store(true, Relaxed);
             let about = || format!("check_everything(.., .only({subject:?}, None))");
             let finally = plan.finally;
             watched(&about, || finally(&shared, &mut row)).map_err(|broken| broken.replayed_by(about))?;
@@ -134,9 +148,9 @@ fn run<D: Domain>(world: &Arc<World<D>>, plan: Plan<D>) -> Row {
             row.cases = row.cases.max(found.cases);
         }
         Err(broken) => {
-            let case = now.load(Relaxed);
-            row.case = Some(case);
-            if let Err(why) = super::saved::add(file.as_deref(), &row.subject, case) {
+            // What shows only behind all cases is shown again by all of them.
+            row.case = (!after.load(Relaxed)).then(|| now.load(Relaxed));
+            if let Some(Err(why)) = row.case.map(|case| super::saved::add(file.as_deref(), &row.subject, case)) {
                 row.warn(why);
             }
             row.verdict = Verdict::Broken(Box::new(broken));
@@ -160,6 +174,8 @@ struct Answers {
 }
 
 impl Answers {
+    const ROW: &str = "early and late";
+
     fn of<D: Domain>(world: &Arc<World<D>>) -> Self {
         Self { began: std::time::Instant::now(), said: Self::ask(world) }
     }
@@ -211,7 +227,7 @@ impl Answers {
         let apart = std::time::Duration::from_millis(world.subjects.effort.apart_ms);
         let left = apart.saturating_sub(early.began.elapsed());
         std::thread::sleep(left);
-        let mut row = Row { cases: 1, ..Row::new("early and late", 2) };
+        let mut row = Row { cases: 1, ..Row::new(Self::ROW, 2) };
         let found = early.said.and_then(|was| {
             let is = Self::ask(world)?;
             let law = laws::domain::PURE;

@@ -1,13 +1,16 @@
 //! Does a verifier accept what each primitive does?
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{ACCEPTS, Broken};
 use crate::domain::Domain;
 use crate::laws::ensure;
-use crate::laws::watch::entering;
+use crate::laws::planner::PATIENCE_FACTOR;
+use crate::laws::watch::{entering, patience_s, watched, with_patience};
+use crate::motion::Instance;
 use crate::partial::PartialState;
 use crate::plan::Plan;
+use crate::primitive::PrimitiveId;
 use crate::problem::Problem;
 use crate::search::{Darrt, Strategy};
 
@@ -16,6 +19,10 @@ const ATTEMPTS: u64 = 2;
 const MOST_NODES: usize = 512;
 /// So many ways of one primitive are judged at most, and not all refused at the step of that primitive.
 const MANY: usize = 6;
+/// So many ways that end with a step of one primitive are not all refused at one of their steps.
+const MANY_EARLIER: usize = 32;
+/// And so many are shown at most: what is refused before its last step says little.
+const MOST_ASKED: usize = 64;
 
 /// A goal that only the end of this way satisfies.
 pub(in crate::laws) fn its_end<D: Domain>(m: &D, way: &Plan<D>) -> crate::goal::Region<D> {
@@ -29,16 +36,97 @@ pub(in crate::laws) fn its_end<D: Domain>(m: &D, way: &Plan<D>) -> crate::goal::
     crate::goal::Region::<D>::new(Box::new(is_met), Box::new(|_, _| None))
 }
 
-/// Ways that the search found free and that end with a step of a primitive: of none of them all are refused at that step.
-pub(in crate::laws) fn check<D: Domain>(
+/// What became of ways whose last step is an instance of a primitive.
+#[derive(Debug, Default)]
+pub(super) struct Ledger {
+    asked: BTreeMap<usize, usize>,
+    accepted: BTreeSet<usize>,
+    refused: BTreeMap<usize, (usize, PrimitiveId, String)>,
+    /// The same, at whichever step.
+    earlier: BTreeMap<usize, (usize, PrimitiveId, String)>,
+}
+
+impl Ledger {
+    /// Is nothing known yet of the primitive of which this is an instance?
+    pub(super) fn is_open<D: Domain>(&self, instance: &Instance<D>) -> bool {
+        let index = instance.primitive.index();
+        !self.accepted.contains(&index)
+            && self.refused.get(&index).is_none_or(|(count, ..)| *count < MANY)
+            && self.asked.get(&index).is_none_or(|asked| *asked < MOST_ASKED)
+    }
+
+    /// Shows a way to the verifier, for the goal to be where it ends.
+    pub(super) fn judge<D: Domain>(&mut self, problem: &Problem<D>, way: &Plan<D>) {
+        let m = problem.domain();
+        // Whose instance it is, not who proposed it: the transit of a push says nothing about pushes.
+        let Some((last, step)) = way.steps().iter().enumerate().next_back() else { return };
+        let id = step.instance.primitive;
+        *self.asked.entry(id.index()).or_default() += 1;
+        entering("verify");
+        match problem.verifier().verify(m, problem.start(), &its_end(m, way), way) {
+            Ok(_) => {
+                self.accepted.insert(id.index());
+            }
+            // A verifier may know its goal by itself.
+            Err(refusal) => {
+                let count = |of: &mut BTreeMap<usize, (usize, PrimitiveId, String)>| {
+                    let known = of.get(&id.index()).map_or(0, |(count, ..)| *count);
+                    of.insert(id.index(), (known + 1, id, refusal.to_string()));
+                };
+                if refusal.step == Some(last) {
+                    count(&mut self.refused);
+                }
+                if refusal.step.is_some() {
+                    count(&mut self.earlier);
+                }
+            }
+        }
+    }
+
+    fn verdict(&self) -> Result<(), Broken> {
+        for (primitive, (count, id, why)) in &self.refused {
+            let holds = self.accepted.contains(primitive) || *count < MANY;
+            let text = || format!("{count} ways refused at their last step, the last one because {why}");
+            ensure(ACCEPTS, holds, text, "one accepted").map_err(|broken| broken.of(id.name()))?;
+        }
+        // It may refuse what leads to such a step, always, as the touch before a push.
+        for (primitive, (count, id, why)) in &self.earlier {
+            let holds = self.accepted.contains(primitive) || *count < MANY_EARLIER;
+            let text = || format!("{count} ways that end so refused, the last one because {why}");
+            ensure(ACCEPTS, holds, text, "one accepted").map_err(|broken| broken.of(id.name()))?;
+        }
+        Ok(())
+    }
+}
+
+/// The verifier of `problem` is shown ways that are free, as searches of so many `iterations` and the primitives find them: of
+/// those that end with a step of one primitive not all are refused at that step. Up to `most` ways that go on into what is in the
+/// way are each refused.
+///
+/// # Errors
+/// [`ACCEPTS`] or [`WAYS_IN`](super::WAYS_IN), with the primitive.
+pub fn check_ways<D: Domain>(
     problem: &Problem<D>,
     strategy: &Strategy<D>,
     seed: u64,
     iterations: u64,
+    most: usize,
 ) -> Result<(), Broken> {
-    let m = problem.domain();
-    let mut refused: BTreeMap<u16, (usize, String)> = BTreeMap::new();
-    let mut accepted = Vec::new();
+    let about = || format!("check_ways({problem:?}, {strategy:?}, {seed}, {iterations}, {most})");
+    // One plan may be looked at for longer than a primitive may take.
+    let patience_s = PATIENCE_FACTOR * patience_s();
+    let run = || run(problem, strategy, seed, iterations, most);
+    with_patience(patience_s, || watched(&about, run)).map_err(|broken| broken.replayed_by(about))
+}
+
+fn run<D: Domain>(
+    problem: &Problem<D>,
+    strategy: &Strategy<D>,
+    seed: u64,
+    iterations: u64,
+    most: usize,
+) -> Result<(), Broken> {
+    let mut ledger = Ledger::default();
     for attempt in 0..ATTEMPTS {
         let mut search = Darrt::new(problem, strategy, seed, attempt, MOST_NODES);
         for _ in 0..iterations {
@@ -51,28 +139,13 @@ pub(in crate::laws) fn check<D: Domain>(
         }
         for (id, _) in search.tree().iter() {
             let Some(way) = Plan::to_node(search.tree(), id) else { continue };
-            let Some((last, step)) = way.steps().iter().enumerate().next_back() else { continue };
-            let primitive = step.primitive;
-            let count = refused.get(&primitive).map_or(0, |(count, _)| *count);
-            if accepted.contains(&primitive) || count >= MANY {
-                continue;
-            }
-            entering("verify");
-            match problem.verifier().verify(m, problem.start(), &its_end(m, &way), &way) {
-                Ok(_) => accepted.push(primitive),
-                // What it refuses earlier is another's, and a verifier may know its goal by itself.
-                Err(refusal) if refusal.step == Some(last) => {
-                    refused.insert(primitive, (count + 1, refusal.to_string()));
-                }
-                Err(_) => {}
+            if way.steps().last().is_some_and(|step| ledger.is_open(&step.instance)) {
+                ledger.judge(problem, &way);
             }
         }
+        if attempt == 0 {
+            super::proposed::check(problem, search.tree(), &mut ledger, seed, most)?;
+        }
     }
-    for (primitive, (count, why)) in &refused {
-        let holds = accepted.contains(primitive) || *count < MANY;
-        let text = || format!("{count} ways refused at their last step, the last one because {why}");
-        let name = problem.primitives().get(usize::from(*primitive)).map_or("a primitive", |p| p.name());
-        ensure(ACCEPTS, holds, text, "one accepted").map_err(|broken| broken.of(name))?;
-    }
-    Ok(())
+    ledger.verdict()
 }

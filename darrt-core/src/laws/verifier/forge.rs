@@ -7,7 +7,7 @@ use rand::{Rng, RngExt};
 
 use super::Judged;
 use crate::domain::Domain;
-use crate::laws::feed::elsewhere;
+use crate::laws::feed::{components, elsewhere};
 use crate::laws::motion::component_travel;
 use crate::motion::{Instance, Motion};
 use crate::plan::{Plan, Step};
@@ -59,6 +59,19 @@ impl<'a, D: Domain> Forge<'a, D> {
     pub(super) fn moving(&self, rng: &mut dyn Rng) -> Option<usize> {
         let far = |i: &usize| self.ends(*i).is_some_and(|(p, q)| component_travel(self.m(), p, q) > LEAST_M);
         let all: Vec<usize> = (0..self.plan.steps().len()).filter(far).collect();
+        all.get(rng.random_range(0..all.len().max(1))).copied()
+    }
+
+    /// A random step that moves an object by more than a hair, and the last of those that it moves.
+    pub(super) fn moving_object(&self, rng: &mut dyn Rng) -> Option<(usize, ComponentId)> {
+        let of = |(i, step): (usize, &Step<D>)| {
+            let (before, after) = self.ends(i)?;
+            let all = components(self.m(), step.instance.moves);
+            let object = all.into_iter().rfind(|id| *id != ComponentId::Robot)?;
+            let same_robot = State { robot: before.robot.clone(), ..after.clone() };
+            (component_travel(self.m(), before, &same_robot) > LEAST_M).then_some((i, object))
+        };
+        let all: Vec<_> = self.plan.steps().iter().enumerate().filter_map(of).collect();
         all.get(rng.random_range(0..all.len().max(1))).copied()
     }
 

@@ -7,7 +7,7 @@ use rand::RngExt;
 use super::forge::{Change, Forge, LEAST_M};
 use super::{Tampering, rejected};
 use crate::domain::Domain;
-use crate::laws::feed::{components, drift, spoilt_states};
+use crate::laws::feed::{drift, spoilt_states};
 use crate::laws::motion::component_travel;
 use crate::plan::Plan;
 use crate::random::Stream;
@@ -39,7 +39,8 @@ pub(super) fn ways<D: Domain>() -> Vec<Tampering<D>> {
         Tampering { name: "a length without end", change: |f, rng| length(f, rng, f64::INFINITY) },
         Tampering { name: "lets go early", change: early },
         Tampering { name: "loses an object", change: loses },
-        Tampering { name: "leaves the space of the robot", change: leaves },
+        Tampering { name: "leaves the space of the robot", change: |f, rng| leaves(f, rng, true) },
+        Tampering { name: "an object leaves its space", change: |f, rng| leaves(f, rng, false) },
     ]
 }
 
@@ -129,10 +130,8 @@ fn penetrates<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream, is_honest: bool
 
 /// The same with an object that the step moves, while the robot goes on as before.
 fn object_penetrates<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream) -> Option<Plan<D>> {
-    let step = forge.moving(rng)?;
+    let (step, component) = forge.moving_object(rng)?;
     let planned = forge.plan.steps().get(step)?;
-    let mut moved = components(forge.m(), planned.instance.moves).into_iter().filter(|id| *id != ComponentId::Robot);
-    let component = moved.next_back()?;
     let half = planned.instance.at(forge.m(), 0.5 * planned.until, forge.plan.start());
     let into = (0..64).find_map(|_| {
         let there = forge.displaced(&half, component, rng)?;
@@ -256,27 +255,49 @@ fn loses<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream) -> Option<Plan<D>> {
     )
 }
 
-/// The robot's first number leaves the space for a while, at a finite speed.
-fn leaves<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream) -> Option<Plan<D>> {
-    let step = forge.moving(rng)?;
-    let robot = forge.m().robot();
-    let start = &forge.ends(step)?.0.robot;
-    let count = crate::laws::feed::count(robot, start);
-    let index = rng.random_range(0..count.max(1));
-    let face = crate::laws::feed::face(robot, start, index, rng.random_bool(0.5));
-    let value = |q: &crate::state::RobotConfig<D>| crate::laws::feed::values(robot, q).get(index).copied();
-    let (x, edge) = (value(start)?, value(&face)?);
-    let beyond = 2.0 * (edge - x) + if edge >= x { 0.5 } else { -0.5 };
-    let outside = crate::laws::feed::with(robot, start, index, x + beyond);
+/// One number of the robot, or of an object that the step moves, leaves its space for a while, at a finite speed.
+fn leaves<D: Domain>(forge: &Forge<'_, D>, rng: &mut Stream, is_robot: bool) -> Option<Plan<D>> {
+    let (step, component) =
+        if is_robot { (forge.moving(rng)?, ComponentId::Robot) } else { forge.moving_object(rng)? };
+    let (m, start) = (forge.m(), forge.ends(step)?.0);
+    let count = crate::laws::feed::count_of(m, start, component);
+    let (index, is_upper) = (rng.random_range(0..count.max(1)), rng.random_bool(0.5));
+    // As far beyond the face as it is before it, and more.
+    let edge = crate::laws::feed::on_face(m, start, component, index, is_upper);
+    let metres = component_travel(m, start, &edge) + 0.5;
+    let there = crate::laws::feed::beyond_face(m, start, component, index, is_upper, metres);
+    let is_inside = match component {
+        ComponentId::Robot => m.robot().contains(&there.robot),
+        ComponentId::Object(id) => m.objects().get(id.index())?.contains(there.object(id)?),
+    };
     // Where a number wraps around, or has no bound, it does not leave.
-    if robot.contains(&outside) || edge == x {
+    if is_inside || edge == *start {
         return None;
     }
-    let change: Change<D> = Arc::new(move |m, t, state| {
-        let robot = m.robot();
-        let here = crate::laws::feed::values(robot, &state.robot).get(index).copied().unwrap_or(0.0);
-        let there = here + (x + beyond - here) * bump(t);
-        state.robot = crate::laws::feed::with(robot, &state.robot, index, there);
-    });
-    forge.changed(step, |length| 10.0 * (length + 2.0 * beyond.abs()), change)
+    let beyond = value(m, &there, component, index)?;
+    let far_m = (beyond - value(m, start, component, index)?).abs();
+    let change: Change<D> = Arc::new(move |m, t, state| bring(m, state, component, index, (beyond, bump(t))));
+    forge.changed(step, |length| 10.0 * (length + 2.0 * far_m), change)
+}
+
+fn value<D: Domain>(m: &D, state: &State<D>, component: ComponentId, index: usize) -> Option<f64> {
+    let all = match component {
+        ComponentId::Robot => crate::laws::feed::values(m.robot(), &state.robot),
+        ComponentId::Object(id) => crate::laws::feed::values(m.objects().get(id.index())?, state.object(id)?),
+    };
+    all.get(index).copied()
+}
+
+/// Brings one number by a share of the way to what it should be.
+fn bring<D: Domain>(m: &D, state: &mut State<D>, component: ComponentId, index: usize, (wanted, share): (f64, f64)) {
+    let Some(here) = value(m, state, component, index) else { return };
+    let at = here + (wanted - here) * share;
+    match component {
+        ComponentId::Robot => state.robot = crate::laws::feed::with(m.robot(), &state.robot, index, at),
+        ComponentId::Object(id) => {
+            if let (Some(space), Some(slot)) = (m.objects().get(id.index()), state.objects.get_mut(id.index())) {
+                *slot = crate::laws::feed::with(space, slot, index, at);
+            }
+        }
+    }
 }

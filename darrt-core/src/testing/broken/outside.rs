@@ -3,6 +3,7 @@
 
 use super::Case;
 
+mod arrivals;
 mod domains;
 mod goals;
 mod hangs;
@@ -15,6 +16,7 @@ mod strangers;
 mod validities;
 mod verifiers;
 mod ways;
+mod ways_in;
 mod wholes;
 
 pub(super) fn cases() -> Vec<Case> {
@@ -30,6 +32,8 @@ pub(super) fn cases() -> Vec<Case> {
         wholes::cases(),
         strangers::cases(),
         ways::cases(),
+        ways_in::cases(),
+        arrivals::cases(),
         measures::cases(),
         held::cases(),
     ]

@@ -15,6 +15,7 @@ pub(super) fn check<M: Manipulator>(robot: &M) -> Result<(), Broken> {
     let count = robot.limits().len();
     let fits = M::Joints::zeros(count).is_some_and(|zeros| zeros.as_ref().len() == count);
     ensure(COUNTS, fits, || format!("{count} limits"), "as many as there are joints").map_err(|b| b.of("limits"))?;
+    super::vector::check_joint_vector::<M::Joints>(count)?;
     equal(COUNTS, &robot.joint_weights_m().len(), &count).map_err(|broken| broken.of("weights"))?;
     for (joint, weight) in robot.joint_weights_m().iter().enumerate() {
         let text = || format!("{weight:?}");

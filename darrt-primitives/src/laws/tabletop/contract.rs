@@ -1,20 +1,59 @@
-//! What the contract of a standard primitive permits.
+//! What the contract of a primitive permits.
 
 use darrt_core::laws::{Broken, ensure};
+use darrt_core::motion::Instance;
+use darrt_core::primitive::PrimitiveId;
 use darrt_core::state::ObjectId;
 
-use super::{CONTRACT, TAKES, Trial};
-use crate::contract::{HandUse, MovingPart, ObjectRule};
+use super::{CONTRACT, SOUND, TAKES, TabletopClaims, Trial};
+use crate::contract::{Contract, HandUse, HandWay, MovingPart, ObjectRule};
 use crate::manipulator::Manipulator;
-use crate::primitive::STANDARD;
-use crate::tabletop::TabletopState;
+use crate::primitive::{STANDARD, STRAIGHT_LINE_ARM_TRANSIT};
+use crate::tabletop::{Tabletop, TabletopState};
 
 /// What is taken up moves by more than this, metres.
 const LEAST_M: f64 = 1e-3;
 
+/// `instances` that were propagated from `from` keep the contracts of their primitives: of those in `contracts`, which are a
+/// user's own. ([`check_tabletop`](super::check_tabletop) knows those of the standard ones.)
+///
+/// # Errors
+/// [`SOUND`] for a contract that contradicts itself, else the first law that an instance breaks.
+pub fn check_contracts<M: Manipulator>(
+    m: &Tabletop<M>,
+    contracts: &[(PrimitiveId, Contract)],
+    instances: &[Instance<Tabletop<M>>],
+    from: &TabletopState<M>,
+    ts: &[f64],
+    claims: &TabletopClaims,
+) -> Result<(), Broken> {
+    for (id, contract) in contracts {
+        let flaw = contract.flaw();
+        ensure(SOUND, flaw.is_none(), || flaw.unwrap_or_default().to_owned(), "a contract that can be kept")
+            .map_err(|broken| broken.of(id.name()).replayed_by(|| format!("{contract:?}.flaw()")))?;
+    }
+    let mut here = from.clone();
+    for instance in instances {
+        if let Some((_, contract)) = contracts.iter().find(|(id, _)| *id == instance.primitive) {
+            let call =
+                || format!("check_contracts(&m, &{contracts:?}, &[{instance:?}], &{here:?}, &{ts:?}, &{claims:?})");
+            Trial::new(m, instance, &here, ts, claims)
+                .keeps(*contract)
+                .map_err(|broken| broken.of(format_args!("instance {:?}", instance.primitive)).replayed_by(call))?;
+        }
+        instance.motion.at_into(m, 1.0, &mut here);
+    }
+    Ok(())
+}
+
 impl<M: Manipulator> Trial<'_, M> {
+    /// If it is one of the standard primitives.
     pub(super) fn contract(&self) -> Result<(), Broken> {
-        let Some((_, contract)) = STANDARD.iter().find(|(id, _)| *id == self.instance.primitive) else { return Ok(()) };
+        let known = STANDARD.iter().find(|(id, _)| *id == self.instance.primitive);
+        known.map_or(Ok(()), |(_, contract)| self.keeps(*contract))
+    }
+
+    fn keeps(&self, contract: Contract) -> Result<(), Broken> {
         let states = || self.looks.iter().map(|look| (look.t, &look.state)).chain([(1.0, &self.end)]);
         for (t, state) in states() {
             let stays = match contract.moves {
@@ -58,6 +97,13 @@ impl<M: Manipulator> Trial<'_, M> {
             let is_pushed = moves && during != Some(id);
             let text = || format!("{} moves at rest", self.name(id));
             ensure(CONTRACT, !is_pushed || contract.object != ObjectRule::Rests, text, "at rest, or in the hand")?;
+        }
+        let contacts = &self.instance.contacts;
+        let touches = contacts.fingers.is_some() && !contract.fingers_touch;
+        ensure(CONTRACT, !touches, || format!("{contacts:?}"), "fingers that touch nothing")?;
+        // Its own law looks at that one.
+        if contract.way == HandWay::Straight && self.instance.primitive != STRAIGHT_LINE_ARM_TRANSIT {
+            self.straight()?;
         }
         match during.filter(|_| contract.hand == HandUse::Takes) {
             Some(id) => self.is_taken(id),

@@ -32,7 +32,7 @@ impl<M: Manipulator> Trial<'_, M> {
         if leaves { self.retreat() } else { Ok(()) }
     }
 
-    fn straight(&self) -> Result<(), Broken> {
+    pub(super) fn straight(&self) -> Result<(), Broken> {
         let (start, end) = (self.tool(self.from), self.tool(&self.end));
         let way = end.translation.vector - start.translation.vector;
         let along = way.try_normalize(1e-9).unwrap_or_else(Vector3::zeros);

@@ -5,8 +5,10 @@ use darrt_core::motion::Instance;
 use darrt_core::primitive::PrimitiveId;
 
 use super::Case;
-use super::bench::{Act, Change, regrip, scene};
-use crate::laws::tabletop::{CONTRACT, TAKES};
+use super::bench::{Act, Change, Scene, regrip, scene};
+use crate::contract::{Contract, HandUse, HandWay, MovingPart, ObjectRule};
+use crate::laws::tabletop::{CONTRACT, SOUND, STRAIGHT, TAKES};
+use crate::laws::{TabletopClaims, check_contracts};
 use crate::primitive;
 use crate::testing::table::object;
 
@@ -21,7 +23,54 @@ fn changed(act: Act, change: Change) -> Result<(), Broken> {
     scene(act)?.warped(change).check()
 }
 
+/// A primitive of a user.
+const OWN: PrimitiveId = PrimitiveId::new(9, "Own");
+
+/// The instance of this scene by this contract.
+fn by(contract: Contract, scene: Scene) -> Result<(), Broken> {
+    let Scene { m, from, instance } = scene;
+    let instance = Instance { primitive: OWN, ..instance };
+    check_contracts(&m, &[(OWN, contract)], &[instance], &from, &[0.1, 0.5, 0.9], &TabletopClaims::default())
+}
+
+const LINE: Contract = Contract::of(MovingPart::Arm, HandUse::Empty, HandWay::Straight);
+const PUSHED: Contract =
+    Contract { object: ObjectRule::Pushed, ..Contract::of(MovingPart::Arm, HandUse::Empty, HandWay::Own) };
+
+fn of_ones_own() -> Vec<Case> {
+    let case = |name, wrong, law, broken| Case {
+        name,
+        wrong,
+        law,
+        broken,
+        honest: || {
+            let carries = Contract::of(MovingPart::Base, HandUse::Carries, HandWay::Free);
+            let all = [(LINE, Act::Approach), (PUSHED, Act::Push), (carries, Act::Carry)];
+            all.into_iter().try_for_each(|(contract, act)| by(contract, scene(act)?))
+        },
+    };
+    vec![
+        case("a contract of no contact", "what is pushed is not touched, it says", SOUND, || {
+            by(Contract { fingers_touch: false, ..PUSHED }, scene(Act::Push)?)
+        }),
+        case("an own line that bows", "the contract says straight, and the joints go straight", STRAIGHT, || {
+            let bows: Change = Box::new(|_, t, state| state.robot.arm[1] += 0.2 * t * (1.0 - t));
+            by(LINE, scene(Act::Approach)?.warped(bows))
+        }),
+        case("hands off, it says", "the contract forbids the fingers what the instance allows them", CONTRACT, || {
+            by(Contract { fingers_touch: false, ..LINE }, scene(Act::Retreat)?)
+        }),
+        case("an own push of nothing", "the contract of an empty hand, copied from a transit", CONTRACT, || {
+            by(Contract { object: ObjectRule::Rests, ..PUSHED }, scene(Act::Push)?)
+        }),
+    ]
+}
+
 pub(super) fn cases() -> Vec<Case> {
+    [of_standard_ones(), of_ones_own()].concat()
+}
+
+fn of_standard_ones() -> Vec<Case> {
     let case = |name, wrong, law, broken| Case {
         name,
         wrong,

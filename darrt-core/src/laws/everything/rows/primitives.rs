@@ -12,10 +12,12 @@ use crate::laws::everything::world::World;
 use crate::laws::primitive::{ENDS, Excuse, FEASIBLE, FREE, NOT_EMPTY, PANICS, PrimitiveClaims, Tried};
 use crate::laws::watch::{asking, bounded, entering, guarded};
 use crate::laws::{Broken, MotionClaims, check_contacts, ensure, motion, primitive, try_primitive};
+use crate::motion::Instance;
 use crate::partial::PartialState;
 use crate::primitive::Primitive;
 use crate::random::{Purpose, Stream, stream};
-use crate::state::State;
+use crate::state::{ComponentId, ObjectId, State};
+use crate::validity::Validity;
 
 /// Parameters of an instance at which the contact with its object must be allowed.
 const TS: [f64; 4] = [0.2, 0.5, 0.8, 0.95];
@@ -23,6 +25,8 @@ const TS: [f64; 4] = [0.2, 0.5, 0.8, 0.95];
 const RETRIES: usize = 4;
 /// A primitive that found so many ways of which none was free finds none that is.
 const MOST_BLOCKED: u64 = 100;
+/// Of so many ways for each kind of what is to be done it is seen whether they are free.
+const MOST_WALKS: u64 = 300;
 /// A primitive that was useful so often and never found a way finds none at all.
 const MOST_IN_VAIN: u64 = 1000;
 
@@ -70,7 +74,7 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
             Tried::Propagated(instances) => {
                 Tally::count(&counted.hit);
                 Tally::count(&counted.reached);
-                let is_known = |instance: &crate::motion::Instance<D>| {
+                let is_known = |instance: &Instance<D>| {
                     subjects.primitives.iter().any(|primitive| primitive.id() == instance.primitive)
                 };
                 if !instances.iter().all(is_known) {
@@ -82,7 +86,7 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
                         entering("free_prefix");
                         is_free = is_free && validity.free_prefix(m, &instance, &here).blame.is_none();
                         let one = [instance];
-                        check_contacts(m, &**validity, &one, &here, &TS)?;
+                        allows_contact(m, &**validity, &one, &here)?;
                         let [instance] = one;
                         here = instance.at(m, 1.0, &here);
                     }
@@ -94,41 +98,85 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
         }
         Ok(())
     };
-    let once = move |world: &World<D>, row: &mut Row| {
-        let found_in_cases = Tally::get(&tally.reached);
-        let calls = many_calls(world, index, &tally)?;
-        let [tried, hit, reached] = [&tally.tried, &tally.hit, &tally.reached].map(Tally::get);
-        row.cases = calls;
-        let unknown = Tally::get(&tally.unknown);
-        if unknown > 0 {
-            row.warn(format!("{unknown} propagations had instances of primitives that were not given"));
-        }
-        if hit == 0 {
-            row.warn(format!("`useful` was false in {tried} of {tried} calls"));
-        } else if reached == 0 {
-            row.warn(format!("`propagate` found no way in {hit} of {hit} calls in which it was useful"));
-        }
-        if hit >= MOST_IN_VAIN && reached == 0 {
-            let found = format!("no way in {hit} of {hit} calls");
-            return Err(Broken::new(FEASIBLE, found, "a way now and then, where it is useful").of(name));
-        }
-        for (kind, [useful, found]) in tally.kinds.iter().enumerate() {
-            let [useful, found] = [useful, found].map(Tally::get);
-            let says = |bit: usize, what: &'static str| if kind & bit == 0 { "" } else { what };
-            let open = [says(1, "the robot"), says(2, "an object")].join(" ");
-            let text = || {
-                format!("no way in {useful} of {useful} calls with {open} to be moved{}", says(4, ", in another mode"))
-            };
-            ensure(FEASIBLE, useful < MOST_IN_VAIN || found > 0, text, "a way now and then, where it is useful")
-                .map_err(|broken| broken.of(name))?;
-        }
-        let (walked, free) = (found_in_cases, Tally::get(&tally.free));
-        let text = || format!("blocked in {walked} of {walked} propagations");
-        let is_known = world.subjects.validity.is_some() && walked >= MOST_BLOCKED;
-        ensure(FREE, !is_known || free > 0, text, "free now and then").map_err(|broken| broken.of(name))
-    };
+    let once = move |world: &World<D>, row: &mut Row| verdict(world, index, name, &tally, row);
     let laws = primitive::LAWS.len() + motion::LAWS.len();
     Some(Plan::new(name, laws, world.subjects.effort.cases, case).finally(once))
+}
+
+/// What all cases and calls together say.
+fn verdict<D: Domain>(
+    world: &World<D>,
+    index: usize,
+    name: &'static str,
+    tally: &Tally,
+    row: &mut Row,
+) -> Result<(), Broken> {
+    let found_in_cases = Tally::get(&tally.reached);
+    let calls = many_calls(world, index, tally)?;
+    let [tried, hit, reached] = [&tally.tried, &tally.hit, &tally.reached].map(Tally::get);
+    row.cases = calls;
+    let unknown = Tally::get(&tally.unknown);
+    if unknown > 0 {
+        row.warn(format!("{unknown} propagations had instances of primitives that were not given"));
+    }
+    if hit == 0 {
+        row.warn(format!("`useful` was false in {tried} of {tried} calls"));
+    } else if reached == 0 {
+        row.warn(format!("`propagate` found no way in {hit} of {hit} calls in which it was useful"));
+    }
+    if hit >= MOST_IN_VAIN && reached == 0 {
+        let found = format!("no way in {hit} of {hit} calls");
+        return Err(Broken::new(FEASIBLE, found, "a way now and then, where it is useful").of(name));
+    }
+    for (kind, [useful, found]) in tally.kinds.iter().enumerate() {
+        let [useful, found] = [useful, found].map(Tally::get);
+        let text = || format!("no way in {useful} of {useful} calls {}", open(kind));
+        ensure(FEASIBLE, useful < MOST_IN_VAIN || found > 0, text, "a way now and then, where it is useful")
+            .map_err(|broken| broken.of(name))?;
+    }
+    let (mut walked, mut free) = (found_in_cases, Tally::get(&tally.free));
+    for (kind, [tried, kept]) in tally.walks.iter().enumerate() {
+        let [tried, kept] = [tried, kept].map(Tally::get);
+        (walked, free) = (walked + tried, free + kept);
+        if tried >= MOST_WALKS && kept == 0 {
+            row.warn(format!("blocked in {tried} of {tried} ways {}", open(kind)));
+        }
+    }
+    for (i, [useful, found]) in tally.objects.iter().enumerate() {
+        let useful = Tally::get(useful);
+        if useful >= MOST_IN_VAIN && reached > 0 && Tally::get(found) == 0 {
+            let object = world.m.component_name(ComponentId::Object(ObjectId::new(i)));
+            row.warn(format!("no way in {useful} of {useful} calls in which only {object} was to be moved"));
+        }
+    }
+    let [moved, arrived] = tally.arrived.each_ref().map(Tally::get);
+    if moved >= MOST_IN_VAIN && arrived == 0 {
+        row.warn(format!("what its target names moved on {moved} ways, and none of them ended there"));
+    }
+    let text = || format!("blocked in {walked} of {walked} propagations");
+    let is_known = world.subjects.validity.is_some() && walked >= MOST_BLOCKED;
+    ensure(FREE, !is_known || free > 0, text, "free now and then").map_err(|broken| broken.of(name))
+}
+
+/// What is forgotten shows all along. For a moment the object may well be in the way: in the hand, of the robot's own base.
+fn allows_contact<D: Domain>(
+    m: &D,
+    validity: &dyn Validity<D>,
+    one: &[Instance<D>; 1],
+    from: &State<D>,
+) -> Result<(), Broken> {
+    let is_forgotten = TS.iter().all(|t| check_contacts(m, validity, one, from, &[*t]).is_err());
+    if is_forgotten { check_contacts(m, validity, one, from, &TS) } else { Ok(()) }
+}
+
+/// What is still to be done, in words.
+fn open(kind: usize) -> String {
+    let says = |bit: usize, what: &'static str| if kind & bit == 0 { "" } else { what };
+    format!(
+        "with {} to be moved{}",
+        [says(1, "the robot"), says(2, "an object")].join(" "),
+        says(4, ", in another mode")
+    )
 }
 
 /// Many calls that only look whether they come back, without panic: for what happens once in a thousand times.
@@ -178,6 +226,14 @@ fn one_call<D: Domain>(
         + 4 * usize::from(is_elsewhere);
     let [useful, ways] = tally.kinds.get(kind).map_or([&tally.hit; 2], |[useful, ways]| [useful, ways]);
     Tally::count(useful);
+    let single = single(m, from, to);
+    let of_object = single.and_then(|component| match component {
+        ComponentId::Object(id) => tally.objects.get(id.index()),
+        ComponentId::Robot => None,
+    });
+    if let Some([useful, _]) = of_object {
+        Tally::count(useful);
+    }
     entering("propagate");
     let most = PrimitiveClaims::<D>::default().max_draws;
     let found = bounded(PANICS, ENDS, most, draws, |rng| primitive.propagate(m, from, to, rng))?;
@@ -185,6 +241,50 @@ fn one_call<D: Domain>(
         Tally::count(&tally.reached);
         Tally::count(ways);
         ensure(NOT_EMPTY, !instances.is_empty(), || "no instances".to_owned(), "at least one")?;
+        if let Some([_, found]) = of_object {
+            Tally::count(found);
+        }
+        if let (Some(validity), Some([tried, kept])) = (&world.subjects.validity, tally.walks.get(kind))
+            && Tally::get(tried) < MOST_WALKS
+        {
+            Tally::count(tried);
+            let mut here = from.clone();
+            let is_free = instances.iter().all(|instance| {
+                entering("free_prefix");
+                let is_free = validity.free_prefix(m, instance, &here).blame.is_none();
+                here = instance.at(m, 1.0, &here);
+                is_free
+            });
+            if is_free {
+                Tally::count(kept);
+            }
+        }
+        if let (Some(component), Some(last)) = (single, instances.last()) {
+            let end = last.at(m, 1.0, from);
+            let [moved, arrived] = &tally.arrived;
+            let is_moved = match component {
+                ComponentId::Robot => end.robot != from.robot,
+                ComponentId::Object(id) => end.object(id) != from.object(id),
+            };
+            if is_moved {
+                Tally::count(moved);
+                if to.is_met(m, &end) {
+                    Tally::count(arrived);
+                }
+            }
+        }
     }
     Ok(())
+}
+
+/// The only component that a target names, if it is not there yet.
+fn single<D: Domain>(m: &D, from: &State<D>, to: &PartialState<D>) -> Option<ComponentId> {
+    let mut objects = to.objects().map(|(id, _)| id);
+    let object = objects.next();
+    let component = match (to.robot(), object, objects.next()) {
+        (Some(_), None, _) => ComponentId::Robot,
+        (None, Some(id), None) => ComponentId::Object(id),
+        _ => return None,
+    };
+    (!to.is_met(m, from)).then_some(component)
 }

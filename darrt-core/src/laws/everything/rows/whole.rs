@@ -157,6 +157,9 @@ const MANY_REFUSED: u64 = 4;
 /// How many times as many iterations as the planner is checked with each attempt of that search has.
 const ATTEMPT: u64 = 3;
 
+/// One plan that leads into something for so many cases.
+const INTO: u64 = 2;
+
 /// Counts the plans that the verifier refuses.
 struct Refused {
     heart: Heart,
@@ -204,7 +207,8 @@ fn the_planner<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
             row.warn(format!("the verifier refused every plan that was found, the last one because {refusal}"));
         }
         let iterations = ATTEMPT * world.subjects.effort.iterations;
-        verifier::each_primitive::check(&problem, &strategy, world.seed, iterations)
+        let shown = usize::try_from(world.subjects.effort.cases / INTO).unwrap_or(usize::MAX);
+        verifier::check_ways(&problem, &strategy, world.seed, iterations, shown)
     };
     let laws = planner::LAWS.len() + verifier::LAWS.len();
     let cases = (world.subjects.effort.cases / 32).max(1);

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::super::bench::{Bench, Rule, cart, robot_at, state};
+use super::super::bench::{self, Bench, Rule, cart, robot_at, state};
 use super::super::motions::{drag, go};
 use super::super::{Case, inputs, seed};
 use crate::domain::Domain;
@@ -12,7 +12,7 @@ use crate::laws::{Broken, Judged, check_verifier};
 use crate::plan::{Plan, Step};
 use crate::space::ComponentSpace;
 use crate::state::State;
-use crate::validity::Validity;
+use crate::validity::{BlockKind, Validity};
 use crate::verify::{Refusal, Replay, Verified, Verifier};
 
 use std::cell::Cell;
@@ -213,6 +213,13 @@ fn refusing() -> Vec<Case> {
                 })
             },
         ),
+        case("carts know no end", "the ends of the rail are for the robot", REFUSES, || {
+            let lenient = |wall, state: &State<Bench>, contacts| match bench::check(wall, state, contacts) {
+                Err(blame) if blame.kind == BlockKind::Limits && *blame.first != *"robot" => Ok(()),
+                found => found,
+            };
+            check(&Replay::new(Rule { check: lenient, ..RULE() }, 1e-3))
+        }),
         case("the first is as good as the next", "does not look again at a plan of as many steps", REFUSES, || {
             CALLS.set(0);
             judged(|court| {
