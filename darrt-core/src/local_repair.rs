@@ -23,7 +23,7 @@ pub enum NoWay {
 ///
 /// # Laws
 /// The result starts at `from` and ends where `instance` ends, bit for bit; it moves the same components and touches
-/// nothing more. Pure but for `rng`.
+/// nothing more; the validity that was asked finds it free without care. Pure but for `rng`.
 ///
 /// # Example
 /// ```

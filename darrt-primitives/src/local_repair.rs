@@ -62,13 +62,16 @@ impl<M: Manipulator> LocalRepair<Tabletop<M>> for TransitRepair {
         let waypoints: Vec<_> = way.iter().skip(1).map(|q| Waypoint { robot: *q, pushed: 0.0 }).collect();
         let carried = inside.mode.held().map_or(Carried::Nothing, |held| Carried::Held(*held));
         let motion = ArmMotion::new(m, from, &waypoints, carried, inside.mode.clone(), inside.mode);
-        Ok(Instance {
+        let around = Instance {
             primitive: instance.primitive,
             motion: Box::new(motion),
             contacts: Contacts::default(),
             moves: instance.moves,
             object: instance.object,
             reversible: true,
-        })
+        };
+        // It was searched for by samples.
+        let free = validity.free_prefix_with(0, m, &around, from);
+        if free.blame.is_some() && free.fraction < 1.0 { Err(NoWay::WithThisCare) } else { Ok(around) }
     }
 }
