@@ -8,6 +8,7 @@ use darrt_geom::body::Body;
 use nalgebra::{Isometry3, Vector3};
 use rand::Rng;
 
+use crate::hand_ties::HandTies;
 use crate::kinematics::JointLimit;
 use crate::object_space::upright;
 
@@ -291,6 +292,12 @@ pub trait Manipulator: Send + Sync + 'static {
     /// The largest force with which the arm can push sideways, newton; infinite (the default): never the limit.
     fn push_force_n(&self) -> f64 {
         f64::INFINITY
+    }
+
+    /// What neither the joints nor the base change of the pose of the hand; by default nothing is tied. A hand that is tied is asked
+    /// to stand nowhere else: Push leans it as it leans, at the height at which it is.
+    fn hand_ties(&self) -> HandTies {
+        HandTies::default()
     }
 
     /// Typical metres of hand travel per unit of each joint: weights of the arm's distance.

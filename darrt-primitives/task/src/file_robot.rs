@@ -3,6 +3,7 @@
 //!
 //! [`MAX_JOINTS`]: darrt_primitives::joints::MAX_JOINTS
 
+mod abilities;
 mod apart;
 mod bases;
 mod chain;
@@ -18,12 +19,14 @@ mod sampled;
 mod semantic;
 pub mod shipped;
 mod task;
+mod ties;
 mod travel;
 pub mod trial;
 
 use std::collections::BTreeMap;
 
 use arrayvec::ArrayVec;
+use darrt_primitives::hand_ties::HandTies;
 use darrt_primitives::heading_drive;
 use darrt_primitives::joints::{Joints, MAX_JOINTS};
 use darrt_primitives::kinematics::JointLimit;
@@ -98,6 +101,7 @@ pub struct FileRobot {
     self_pairs: Vec<(usize, usize)>,
     inverse: Inverse,
     ring: Ring,
+    ties: HandTies,
     speeds: Speeds,
     payload_kg: f64,
     push_force_n: f64,
@@ -176,7 +180,11 @@ impl Manipulator for FileRobot {
     }
 
     fn may_reach(&self, base: &[f64; 3], world_from_tool: &Isometry3<f64>) -> bool {
-        self.ring.may_reach(base, world_from_tool)
+        self.ties.allow(world_from_tool) && self.ring.may_reach(base, world_from_tool)
+    }
+
+    fn hand_ties(&self) -> HandTies {
+        self.ties
     }
 
     fn links(&self) -> &[RobotLink] {

@@ -13,7 +13,7 @@ use rand::RngExt as _;
 use super::apart::{distances, drawn_arm};
 use super::load::Loaded;
 use super::sampled::{self, JOINED, Pair, Pairs, Rule};
-use super::{FileRobot, shipped, trial};
+use super::{FileRobot, abilities, shipped, trial};
 use crate::problem_file::Limits;
 use crate::robot_file::{RobotFileError, Source};
 use crate::text::counted;
@@ -89,7 +89,8 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
         odd.push(format!("{}: a law of robots does not hold: {broken}", loaded.source.name));
     }
     let reach_down = reach_down(&robot);
-    if reach_down.is_none() {
+    let pushes = matches!(robot.hand_ties().pushing(false), Some(Some(_)));
+    if reach_down.is_none() && !pushes {
         odd.push(format!(
             "{}:{}: a hand that points down (tool x axis) reaches nowhere around the base; the primitives push, pick and place with it",
             loaded.source.name,
@@ -115,6 +116,7 @@ fn line(pair: &Pair, samples: usize) -> String {
 fn understood(loaded: &Loaded, robot: &FileRobot, pairs: &Pairs, reach_down: Option<([f64; 2], f64)>) -> Vec<String> {
     let file = &loaded.source.file;
     let mut lines = vec![format!("base:     {:?}", file.base.kind).to_lowercase()];
+    lines.extend(abilities::lines(robot));
     for ((name, limit), speed) in loaded.amended.arm_joints.iter().zip(&robot.limits).zip(&robot.speeds.joints) {
         let range = if limit.is_unlimited() {
             "without limits".to_owned()

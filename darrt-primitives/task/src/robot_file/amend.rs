@@ -14,8 +14,8 @@ use super::error::Fault;
 use super::{BaseKind, RobotFile, pads};
 use std::path::PathBuf;
 
-/// A pose has six degrees of freedom.
-const LEAST_JOINTS: usize = 6;
+/// Where a hand is in a plane, and how it is turned there.
+const LEAST_JOINTS: usize = 3;
 /// The joint of a rail.
 const RAIL: &str = "rail";
 
@@ -76,8 +76,8 @@ pub fn amend(
     }
     if arm_joints.len() < LEAST_JOINTS {
         let why = format!(
-            "is moved by {} joints: the primitives bring the hand down from above, at any heading and lean, and lift it straight up; an \
-             arm that can take the hand to such poses has at least {LEAST_JOINTS} joints, a rail among them",
+            "is moved by {} joints: an arm has at least {LEAST_JOINTS}, a rail among them, for a hand that comes to a place and turns \
+             there",
             arm_joints.len()
         );
         return Err(Fault::new("arm.to", why));

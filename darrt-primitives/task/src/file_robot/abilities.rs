@@ -1,0 +1,81 @@
+//! What an arm can do whose joints do not lift or tilt its hand, and where.
+
+use std::f64::consts::FRAC_PI_2;
+
+use darrt_core::random::{Purpose, stream};
+use darrt_primitives::contact::{Fingertips, HandStance, PushHeights, RimContact};
+use darrt_primitives::manipulator::Manipulator as _;
+use nalgebra::{Point2, Unit, Vector2};
+
+use super::FileRobot;
+use crate::tied_hand::{below_tool_m, why_not_lifted};
+
+/// Distances that are tried, metres ahead of the base: from 0 in steps, so many.
+const AHEAD_M: (f64, u32) = (0.05, 24);
+
+/// What a person should know of a hand that is tied, a line each; none for one that is not.
+pub(super) fn lines(robot: &FileRobot) -> Vec<String> {
+    let ties = robot.hand_ties();
+    let mut lines = Vec::new();
+    match ties.pushing(false) {
+        None => {}
+        Some(None) => {
+            lines.push("tilt:     the hand is always tilted alike, its fingers not side by side: no pushing".into())
+        }
+        Some(Some(HandStance { lean, .. })) => {
+            let how = if lean < 1e-6 {
+                "points down".to_owned()
+            } else if (lean - FRAC_PI_2).abs() < 1e-6 {
+                "is level".to_owned()
+            } else {
+                format!("leans by {:.0} degrees", lean.to_degrees())
+            };
+            lines.push(format!("tilt:     the hand always {how}: objects are pushed and held with it as it is"));
+        }
+    }
+    if let Some(why) = why_not_lifted(&ties) {
+        lines.push(format!("cannot:   {why}; Pick, Place and all that carries are left out of a problem for it"));
+    }
+    if let (Some(at_m), Some(Some(stance))) = (ties.height_m, ties.pushing(false)) {
+        let tips_m = at_m - below_tool_m(robot, robot.hand().max_gap_m(), &stance);
+        lines.push(format!(
+            "can:      push what is higher than its fingertips, whose lowest point is {tips_m:.3} m above the floor, and stands lower"
+        ));
+    }
+    lines
+}
+
+/// Where a hand that is not lifted pushes a disc: the height of a table on which it does so with its fingertips `tips_m` above it, and
+/// how far ahead of the base it reaches the disc, pushed across from one place to the other on either side of straight ahead; metres, in
+/// the middle first. `None` for a hand that does not push, or is lifted.
+pub(super) fn pushes(
+    robot: &FileRobot,
+    [radius_m, height_m]: [f64; 2],
+    tips_m: f64,
+    from_to_m: [f64; 2],
+) -> Option<(f64, Vec<f64>)> {
+    let (at_m, stance) = (robot.hand_ties().height_m?, robot.hand_ties().pushing(false)??);
+    let hand = robot.hand();
+    let gap_m = hand.max_gap_m().min(radius_m);
+    let top_m = at_m - below_tool_m(robot, gap_m, &stance) - tips_m;
+    let tips = Fingertips { beyond_tool: hand.tip_beyond_tool_m(gap_m), half_width: hand.tip_half_width_m() };
+    let contact = RimContact::new(radius_m, gap_m, tips).ok()?;
+    let heights = PushHeights { tips: tips_m, top: height_m };
+    let direction = Unit::new_normalize(Vector2::new(0.0, from_to_m[1] - from_to_m[0]));
+    let mut rng = stream(0, 6, 0, Purpose::Extend);
+    let mut is_reached = |ahead_m: f64| {
+        from_to_m.iter().all(|aside_m| {
+            let puck = Point2::new(ahead_m, *aside_m);
+            let tool = contact.world_from_tool(&puck, &direction, top_m, &heights, &stance);
+            tool.is_ok_and(|tool| {
+                robot.may_reach(&[0.0; 3], &tool) && robot.inverse(&[0.0; 3], &tool, &mut rng).is_some()
+            })
+        })
+    };
+    let distances = (0..AHEAD_M.1).map(|step| f64::from(step) * AHEAD_M.0);
+    let mut reached: Vec<f64> = distances.filter(|ahead_m| is_reached(*ahead_m)).collect();
+    // There the arm is neither stretched nor folded.
+    let middle_m = f64::midpoint(*reached.first()?, *reached.last()?);
+    reached.sort_by(|a, b| (a - middle_m).abs().total_cmp(&(b - middle_m).abs()));
+    (top_m > 0.0).then_some((top_m, reached))
+}
