@@ -11,6 +11,7 @@ use super::line::{self, follow_in_room, room_for_hand};
 use super::retreat::retreat;
 use super::slide::approach;
 use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
+use super::turned::turned;
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::grasp::hold::Hold;
 use crate::grasp::rim::{rim_is_graspable, rim_overhangs};
@@ -61,14 +62,15 @@ pub fn pick<M: Manipulator>(
         }
         let mut grasp = family.sample(rng);
         grasp.open_gap_m = grasp.open_gap_m.min(m.manipulator().hand().max_gap_m());
-        if !fits(m, from, object, movable, pose, &grasp) {
+        let seen = turned(m, object, &from.robot.base, pose, &grasp.object_from_tool, rng);
+        if !fits(m, from, object, movable, &seen, &grasp) {
             continue;
         }
         let Ok(hold) = m.hold(movable, &**family, &grasp) else {
             why = Infeasible::NoHold;
             continue;
         };
-        let at_grasp = grasp.world_from_tool(pose);
+        let at_grasp = grasp.world_from_tool(&seen);
         let tries = m.settings().base_tries.div_ceil(2);
         let wanted = Wanted { world_from_tool: &at_grasp, tries, base: None };
         let mode = beside.opened_to(grasp.open_gap_m).ok_or(Infeasible::NoGrasp)?;

@@ -1,22 +1,34 @@
 //! What an arm can do whose joints do not lift or tilt its hand, and where.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use darrt_core::random::{Purpose, stream};
 use darrt_primitives::contact::{Fingertips, HandStance, PushHeights, RimContact};
-use darrt_primitives::manipulator::Manipulator as _;
-use nalgebra::{Point2, Unit, Vector2};
+use darrt_primitives::manipulator::{Configuration, Manipulator as _};
+use nalgebra::{Point2, Unit, UnitQuaternion, Vector2, Vector3};
+use rand::RngExt as _;
 
 use super::FileRobot;
+use super::apart::drawn_arm;
 use crate::tied_hand::{below_tool_m, why_not_lifted};
 
+/// Poses of the hand that are turned to another heading.
+const HEADINGS: u32 = 200;
 /// Distances that are tried, metres ahead of the base: from 0 in steps, so many.
 const AHEAD_M: (f64, u32) = (0.05, 24);
 
-/// What a person should know of a hand that is tied, a line each; none for one that is not.
+/// What a person should know of an arm that does not take its hand to any pose, a line each; none for one that does.
 pub(super) fn lines(robot: &FileRobot) -> Vec<String> {
     let ties = robot.hand_ties();
     let mut lines = Vec::new();
+    if let Some(share) = other_headings(robot) {
+        let base = if robot.ring.is_fixed() { "its base does not move" } else { "else its base must drive" };
+        lines.push(format!(
+            "heading:  {} joints take the hand to {:.0} % of its poses turned to another heading; {base}",
+            robot.limits().len(),
+            100.0 * share
+        ));
+    }
     match ties.pushing(false) {
         None => {}
         Some(None) => {
@@ -30,7 +42,9 @@ pub(super) fn lines(robot: &FileRobot) -> Vec<String> {
             } else {
                 format!("leans by {:.0} degrees", lean.to_degrees())
             };
-            lines.push(format!("tilt:     the hand always {how}: objects are pushed and held with it as it is"));
+            lines.push(format!(
+                "tilt:     the hand {how}, whatever the joints: objects are pushed and held with it as it is"
+            ));
         }
     }
     if let Some(why) = why_not_lifted(&ties) {
@@ -39,10 +53,26 @@ pub(super) fn lines(robot: &FileRobot) -> Vec<String> {
     if let (Some(at_m), Some(Some(stance))) = (ties.height_m, ties.pushing(false)) {
         let tips_m = at_m - below_tool_m(robot, robot.hand().max_gap_m(), &stance);
         lines.push(format!(
-            "can:      push what is higher than its fingertips, whose lowest point is {tips_m:.3} m above the floor, and stands lower"
+            "can:      push what stands lower and reaches higher than its fingertips, {tips_m:.3} m above the floor"
         ));
     }
     lines
+}
+
+/// In which share of its poses, each turned about its own vertical by chance, the hand is reached with the base where it is; `None` for an
+/// arm that takes its hand to any pose.
+fn other_headings(robot: &FileRobot) -> Option<f64> {
+    robot.few.as_ref()?;
+    let mut rng = stream(0, 8, 0, Purpose::Extend);
+    let mut reached = 0_u32;
+    for _ in 0..HEADINGS {
+        let arm = drawn_arm(robot, &mut rng)?;
+        let mut tool = robot.world_from_tool(&Configuration { base: [0.0; 3], arm });
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), rng.random_range(-PI..PI));
+        tool.rotation = turn * tool.rotation;
+        reached += u32::from(robot.inverse(&[0.0; 3], &tool, &mut rng).is_some());
+    }
+    Some(f64::from(reached) / f64::from(HEADINGS))
 }
 
 /// Where a hand that is not lifted pushes a disc: the height of a table on which it does so with its fingertips `tips_m` above it, and

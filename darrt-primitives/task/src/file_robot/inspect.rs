@@ -321,7 +321,7 @@ fn reach_down(robot: &FileRobot) -> Option<([f64; 2], f64)> {
             // In front, and a little to either side: an arm may be mounted there.
             SIDES_M.into_iter().any(|side| {
                 let tool = Isometry3::from_parts(Vector3::new(distance, side, *height).into(), down);
-                robot.may_reach(&[0.0; 3], &tool) && robot.inverse(&[0.0; 3], &tool, &mut rng).is_some()
+                robot.arm_at(&tool, &mut rng).is_some()
             })
         });
         let Some(low) = reached.next() else { continue };

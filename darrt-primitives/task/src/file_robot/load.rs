@@ -13,6 +13,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::bases::Ring;
 use super::chain::{ArmChain, Driver, Layout, Place};
+use super::few_joints::FewJoints;
 use super::inverse::Inverse;
 use super::opening::{Law, Opening};
 use super::semantic::Semantic;
@@ -190,6 +191,7 @@ impl Loaded {
             self_pairs,
             inverse,
             ring,
+            few: FewJoints::new(&chain, &limits).map_err(unsolvable)?,
             ties: ties(&chain),
             speeds,
             weights_m,

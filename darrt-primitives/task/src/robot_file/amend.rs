@@ -15,7 +15,7 @@ use super::{BaseKind, RobotFile, pads};
 use std::path::PathBuf;
 
 /// Where a hand is in a plane, and how it is turned there.
-const LEAST_JOINTS: usize = 3;
+pub(crate) const LEAST_JOINTS: usize = 3;
 /// The joint of a rail.
 const RAIL: &str = "rail";
 

@@ -5,6 +5,7 @@ use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::robot_file::BuiltHand;
+use crate::robot_file::amend::LEAST_JOINTS;
 use crate::text::counted;
 
 /// How far the tool frame lies before the end of the tips, metres.
@@ -56,13 +57,18 @@ pub(super) fn guess(tree: &KinematicTree, bodies: &[Option<Body>]) -> Option<Han
     best(true).or_else(|| best(false)).map(|(_, hand, _)| hand.clone())
 }
 
+/// The hand with two parallel fingers that the most joints carry of those on arms that do not take it to any pose.
+pub(super) fn guess_few(tree: &KinematicTree, bodies: &[Option<Body>]) -> Option<HandGuess> {
+    let few = hands(tree, bodies).into_iter().find(|(above, _, is_parallel)| *is_parallel && *above < ARM_JOINTS);
+    few.filter(|(above, ..)| *above >= LEAST_JOINTS).map(|(_, hand, _)| hand)
+}
+
 /// Why a hand with two parallel fingers is none for planning: fewer joints carry it than an arm has. `None` if there is none.
 pub(super) fn on_a_short_arm(tree: &KinematicTree, bodies: &[Option<Body>]) -> Option<String> {
     let (above, hand, _) = hands(tree, bodies).into_iter().find(|(.., is_parallel)| *is_parallel)?;
     let joints = counted(above as u64, "joint");
     Some(format!(
-        "has a hand with two fingers, at `{}`, but only {joints} carry it: an arm that takes a hand to any pose has {ARM_JOINTS} \
-         at least, and is the only kind that is planned with",
+        "has a hand with two fingers, at `{}`, but only {joints} carry it: an arm that is planned with has {LEAST_JOINTS} at least",
         hand.on
     ))
 }

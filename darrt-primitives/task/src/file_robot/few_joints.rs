@@ -1,0 +1,202 @@
+//! An arm of fewer joints than six comes to few of the poses that are drawn for its hand: where its base must stand for one, and how
+//! what is round is to be turned.
+//!
+//! The base is three joints more: a bearing, a distance, and a turn, from a vertical axis to the base. With all of them free the
+//! chain brings the hand to a pose from some place of the base; with the bearing alone free, the hand to a pose that is turned
+//! about that axis.
+
+use std::f64::consts::TAU;
+
+use darrt_core::random::{Purpose, stream};
+use darrt_core::space::so2::wrap;
+use darrt_primitives::joints::Joints;
+use darrt_primitives::kinematics::urdf::{JointDescription, JointKind, LinkDescription};
+use darrt_primitives::kinematics::{
+    ChainInverse, InverseOptions, JointLimit, KinematicTree, KinematicsError, RobotDescription,
+};
+use darrt_primitives::manipulator::{JointVector as _, world_from_base};
+use nalgebra::{Isometry3, Point2, Translation3, Unit, UnitQuaternion, Vector3};
+use rand::{Rng, RngExt};
+
+use super::chain::ArmChain;
+
+/// So many joints take a hand to any pose.
+pub(super) const ANY_POSE: usize = 6;
+/// Joints of the base.
+const BASE_JOINTS: usize = 3;
+/// Configurations that are kept to begin from.
+const SEEN: usize = 4096;
+/// How many of them are looked at for one descent, and how many descents are tried.
+const WINDOW: usize = 128;
+const TRIES: usize = 4;
+/// What a radian of the hand counts, metres: it is about so long.
+const HAND_M: f64 = 0.2;
+
+/// A configuration of the arm, and its tool in the frame of the base.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    arm: Joints,
+    base_from_tool: Isometry3<f64>,
+}
+
+/// Base and arm as one chain.
+#[derive(Debug, Clone)]
+pub(super) struct FewJoints {
+    solver: ChainInverse,
+    seen: Vec<Seen>,
+}
+
+impl FewJoints {
+    /// `None` for an arm that needs none of it.
+    ///
+    /// # Errors
+    /// As [`ChainInverse::new`].
+    pub(super) fn new(chain: &ArmChain, limits: &[JointLimit]) -> Result<Option<Self>, KinematicsError> {
+        if limits.len() >= ANY_POSE {
+            return Ok(None);
+        }
+        let description = description(chain, limits);
+        let lost = || KinematicsError::UnknownLink { name: TOOL.to_owned() };
+        let tree = KinematicTree::new(&description).map_err(|_| lost())?;
+        let options = InverseOptions { soft_limits: false, exact: true, ..InverseOptions::default() };
+        let solver = ChainInverse::new(&tree, GROUND, TOOL, &Isometry3::identity(), options)?;
+        let mut rng = stream(0, 7, 0, Purpose::Extend);
+        let mut seen = Vec::with_capacity(SEEN);
+        for _ in 0..SEEN {
+            let values = limits.iter().map(|limit| {
+                let [low, high] = finite(limit);
+                rng.random_range(low..=high)
+            });
+            let Some(arm) = Joints::from_values(&values.collect::<Vec<_>>()) else { break };
+            seen.push(Seen { arm, base_from_tool: chain.world_from_tool(&[0.0; 3], arm.as_ref()) });
+        }
+        Ok(Some(Self { solver, seen }))
+    }
+
+    /// A base from which the arm brings the tool to `world_from_tool`, drawn at random.
+    pub(super) fn base_for(&self, world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> Option<[f64; 3]> {
+        let at = world_from_tool.translation;
+        let above_axis = Isometry3::from_parts(Translation3::new(0.0, 0.0, at.z), world_from_tool.rotation);
+        let values = self.solver.inverse(&above_axis, rng)?;
+        let [bearing, out_m, turn, ..] = values[..] else { return None };
+        Some([at.x + out_m * bearing.cos(), at.y + out_m * bearing.sin(), wrap(bearing + turn)])
+    }
+
+    /// `world_from_tool`, turned about its own vertical so that the arm reaches it.
+    pub(super) fn turned(
+        &self,
+        base: &[f64; 3],
+        world_from_tool: &Isometry3<f64>,
+        rng: &mut dyn Rng,
+    ) -> Option<Isometry3<f64>> {
+        let centre = Point2::from(world_from_tool.translation.vector.xy());
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.turn(base, world_from_tool, &centre, rng)?);
+        Some(Isometry3::from_parts(world_from_tool.translation, turn * world_from_tool.rotation))
+    }
+
+    /// See [`Manipulator::turn_to_reach`](darrt_primitives::manipulator::Manipulator::turn_to_reach).
+    pub(super) fn turn(
+        &self,
+        base: &[f64; 3],
+        world_from_tool: &Isometry3<f64>,
+        centre: &Point2<f64>,
+        rng: &mut dyn Rng,
+    ) -> Option<f64> {
+        let [x, y, yaw] = [base[0] - centre.x, base[1] - centre.y, base[2]];
+        let (bearing, out_m) = (y.atan2(x), x.hypot(y));
+        let turn = wrap(yaw - bearing);
+        let mut limits: Vec<_> = self.solver.limits().to_vec();
+        for (limit, value) in limits.iter_mut().skip(1).zip([out_m, turn]) {
+            *limit = JointLimit::new(value, value);
+        }
+        let wanted = Translation3::new(-centre.x, -centre.y, 0.0) * world_from_tool;
+        let axis_from_base = world_from_base(&[x, y, yaw]);
+        let first = rng.random_range(0..self.seen.len().max(1));
+        (0..TRIES).find_map(|attempt| {
+            let window = self.seen.iter().cycle().skip(first + attempt * WINDOW).take(WINDOW);
+            let aligned = window.map(|seen| {
+                let tool = axis_from_base * seen.base_from_tool;
+                let turn = turn_onto(&tool, &wanted);
+                (seen, turn, apart_m(&turned(&tool, turn), &wanted))
+            });
+            let (seen, ahead, _) = aligned.min_by(|a, b| a.2.total_cmp(&b.2))?;
+            let start: Vec<_> =
+                [bearing + ahead, out_m, turn].into_iter().chain(seen.arm.as_ref().iter().copied()).collect();
+            let values = self.solver.inverse_from(&wanted, &start, &limits)?;
+            // The chain has turned the base the other way round the axis.
+            Some(wrap(bearing - values.first()?))
+        })
+    }
+}
+
+/// The turn about the z axis that brings `pose` nearest to `wanted`: in place, and in the axes of the hand.
+fn turn_onto(pose: &Isometry3<f64>, wanted: &Isometry3<f64>) -> f64 {
+    let flat = |pose: &Isometry3<f64>| {
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| (HAND_M * (pose.rotation * axis)).xy());
+        [pose.translation.vector.xy(), axes[0], axes[1], axes[2]]
+    };
+    let pairs = || flat(pose).into_iter().zip(flat(wanted));
+    let cross: f64 = pairs().map(|(from, to)| from.perp(&to)).sum();
+    let dot: f64 = pairs().map(|(from, to)| from.dot(&to)).sum();
+    cross.atan2(dot)
+}
+
+fn turned(pose: &Isometry3<f64>, angle: f64) -> Isometry3<f64> {
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
+    Isometry3::from_parts((turn * pose.translation.vector).into(), turn * pose.rotation)
+}
+
+fn apart_m(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
+    (a.translation.vector - b.translation.vector).norm() + HAND_M * a.rotation.angle_to(&b.rotation)
+}
+
+fn finite(limit: &JointLimit) -> [f64; 2] {
+    if limit.is_unlimited() { [-TAU / 2.0, TAU / 2.0] } else { [limit.lower, limit.upper] }
+}
+
+/// The links at the ends of the chain.
+const GROUND: &str = "ground";
+const TOOL: &str = "tool";
+
+/// A description of base and arm as one chain.
+fn description(chain: &ArmChain, limits: &[JointLimit]) -> RobotDescription {
+    // As far as the tool may be from the base.
+    let slides = chain.joints.iter().zip(limits).filter(|(joint, _)| joint.slides);
+    let slides: f64 = slides.map(|(_, limit)| limit.lower.abs().max(limit.upper.abs())).sum();
+    let bones: f64 = chain.joints.iter().map(|joint| joint.before.translation.vector.norm()).sum();
+    let out = JointLimit::new(0.0, bones + slides + chain.wrist_from_tool.translation.vector.norm());
+    let (here, up, ahead) = (Isometry3::identity(), Vector3::z_axis(), Vector3::x_axis());
+    let (turns, slides) = (JointKind::Turning, JointKind::Sliding);
+    let base: [(JointKind, Isometry3<f64>, Unit<Vector3<f64>>, JointLimit); BASE_JOINTS] = [
+        (turns, here, up, JointLimit::UNLIMITED),
+        (slides, here, ahead, out),
+        (turns, here, up, JointLimit::UNLIMITED),
+    ];
+    let arm = chain
+        .joints
+        .iter()
+        .zip(limits)
+        .map(|(joint, limit)| (if joint.slides { slides } else { turns }, joint.before, joint.axis, *limit));
+    let tool = (JointKind::Fixed, chain.wrist_from_tool, up, JointLimit::UNLIMITED);
+    let link = |name: &str| LinkDescription { name: name.into(), collision: Vec::new(), has_visual: false };
+    let mut description =
+        RobotDescription { name: String::new(), links: vec![link(GROUND)], joints: Vec::new(), root: 0 };
+    for (index, (kind, parent_from_child, axis, limit)) in base.into_iter().chain(arm).chain([tool]).enumerate() {
+        let is_tool = kind == JointKind::Fixed;
+        description.links.push(link(&if is_tool { TOOL.to_owned() } else { format!("link {index}") }));
+        description.joints.push(JointDescription {
+            name: format!("joint {index}").into(),
+            kind,
+            parent: index,
+            child: index + 1,
+            parent_from_child,
+            axis,
+            limit,
+            soft_limit: limit,
+            max_velocity: 0.0,
+            max_effort: 0.0,
+            mimic: None,
+        });
+    }
+    description
+}
