@@ -15,7 +15,7 @@ const UPRIGHT_RAD: f64 = 1e-6;
 
 /// Where a round object stands upright, turned about its axis as the robot, its base at `base`, wants it to bring the hand to
 /// `object_from_tool` on it; all else as it is.
-pub(super) fn turned<M: Manipulator>(
+pub fn turned<M: Manipulator>(
     m: &Tabletop<M>,
     object: ObjectId,
     base: &[f64; 3],

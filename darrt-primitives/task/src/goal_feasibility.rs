@@ -11,7 +11,7 @@ use darrt_primitives::primitive::{PICK, PUSH};
 use darrt_primitives::push::Friction;
 use darrt_primitives::push::steady::SlidingDisc;
 
-use crate::grasp_families::why_none_holds;
+use crate::grasp_families::{why_none_fits_tilt, why_none_holds};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{GoalState, GoalTarget, Object, ObjectGoal, ProblemFile};
 use crate::tied_hand::{why_not_lifted, why_not_pushed};
@@ -71,11 +71,17 @@ impl<'a> Feasibility<'a> {
         let slides = any(Contract::slides);
         let is_own = |does: bool, id: PrimitiveId| does && !is_allowed(id);
         let pick = fit(takes, "`Pick` is not among the primitives");
-        let lifts = || why_not_lifted(&robot.hand_ties()).map_or(Ok(()), Err);
+        let ties = robot.hand_ties();
+        let lifts = || why_not_lifted(&ties).map_or(Ok(()), Err);
+        let fits = |()| why_none_fits_tilt(object, robot.hand(), &ties).map_or(Ok(()), Err);
         let pick = if is_own(takes, PICK) {
             pick
         } else {
-            lifts().and(pick).and(fit(!object.grasps.is_empty(), "it has no `grasps` for Pick")).and_then(holds)
+            lifts()
+                .and(pick)
+                .and(fit(!object.grasps.is_empty(), "it has no `grasps` for Pick"))
+                .and_then(fits)
+                .and_then(holds)
         };
         let place = pick.clone().and(fit(lets_go, "`Place` is not among the primitives"));
         let push = fit(slides, "`Push` is not among the primitives");

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use darrt_core::random::{Purpose, stream};
 use darrt_primitives::contact::{Fingertips, HandStance, PushHeights, RimContact};
 use darrt_primitives::manipulator::{Configuration, Manipulator as _};
-use nalgebra::{Point2, Unit, UnitQuaternion, Vector2, Vector3};
+use nalgebra::{Isometry3, Point2, Unit, UnitQuaternion, Vector2, Vector3};
 use rand::RngExt as _;
 
 use super::FileRobot;
@@ -21,12 +21,14 @@ const AHEAD_M: (f64, u32) = (0.05, 24);
 pub(super) fn lines(robot: &FileRobot) -> Vec<String> {
     let ties = robot.hand_ties();
     let mut lines = Vec::new();
-    if let Some(share) = other_headings(robot) {
-        let base = if robot.ring.is_fixed() { "its base does not move" } else { "else its base must drive" };
+    if let Some(shares) = other_headings(robot) {
+        let [any, down] = shares.map(|share| share.map(|share| format!("{:.0} %", 100.0 * share)));
+        let joints = robot.limits().len();
+        let base = if robot.ring.is_fixed() { "" } else { "; from other places of the base from any side" };
+        let down = down.map_or_else(String::new, |share| format!(", to {share} of those in which it points down"));
         lines.push(format!(
-            "heading:  {} joints take the hand to {:.0} % of its poses turned to another heading; {base}",
-            robot.limits().len(),
-            100.0 * share
+            "heading:  {joints} joints take the hand to {} of its poses turned to another heading{down}{base}",
+            any.unwrap_or_default()
         ));
     }
     match ties.pushing(false) {
@@ -59,20 +61,26 @@ pub(super) fn lines(robot: &FileRobot) -> Vec<String> {
     lines
 }
 
-/// In which share of its poses, each turned about its own vertical by chance, the hand is reached with the base where it is; `None` for an
-/// arm that takes its hand to any pose.
-fn other_headings(robot: &FileRobot) -> Option<f64> {
+/// In which share of its poses, each turned about its own vertical by chance, the hand is reached with the base where it is; and of
+/// those in which it points down, where there are such. `None` for an arm that takes its hand to any pose.
+fn other_headings(robot: &FileRobot) -> Option<[Option<f64>; 2]> {
     robot.few.as_ref()?;
     let mut rng = stream(0, 8, 0, Purpose::Extend);
-    let mut reached = 0_u32;
+    let down = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), FRAC_PI_2);
+    let mut counts = [[0_u32; 2]; 2];
     for _ in 0..HEADINGS {
         let arm = drawn_arm(robot, &mut rng)?;
-        let mut tool = robot.world_from_tool(&Configuration { base: [0.0; 3], arm });
+        let pose = robot.world_from_tool(&Configuration { base: [0.0; 3], arm });
+        let is_down = robot.arm_at(&Isometry3::from_parts(pose.translation, down), &mut rng).is_some();
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), rng.random_range(-PI..PI));
-        tool.rotation = turn * tool.rotation;
-        reached += u32::from(robot.inverse(&[0.0; 3], &tool, &mut rng).is_some());
+        for ([asked, reached], rotation) in counts.iter_mut().zip([Some(pose.rotation), is_down.then_some(down)]) {
+            let Some(rotation) = rotation else { continue };
+            let tool = Isometry3::from_parts(pose.translation, turn * rotation);
+            *asked += 1;
+            *reached += u32::from(robot.inverse(&[0.0; 3], &tool, &mut rng).is_some());
+        }
     }
-    Some(f64::from(reached) / f64::from(HEADINGS))
+    Some(counts.map(|[asked, reached]| (asked > 0).then(|| f64::from(reached) / f64::from(asked))))
 }
 
 /// Where a hand that is not lifted pushes a disc: the height of a table on which it does so with its fingertips `tips_m` above it, and

@@ -19,9 +19,8 @@ use nalgebra::{Isometry3, Point2, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 
 use super::chain::ArmChain;
+use crate::robot_file::amend::ANY_POSE;
 
-/// So many joints take a hand to any pose.
-pub(super) const ANY_POSE: usize = 6;
 /// Joints of the base.
 const BASE_JOINTS: usize = 3;
 /// Configurations that are kept to begin from.
@@ -199,4 +198,93 @@ fn description(chain: &ArmChain, limits: &[JointLimit]) -> RobotDescription {
         });
     }
     description
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::FileRobot;
+    use super::super::load::Loaded;
+    use super::*;
+    use crate::problem_file::Limits;
+    use crate::robot_file::Source;
+    use darrt_primitives::manipulator::{Configuration, Manipulator as _};
+    use rand::SeedableRng as _;
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    fn robots() -> [FileRobot; 3] {
+        [
+            (
+                include_str!("../../tests/data/few-joints/scara.toml"),
+                include_str!("../../tests/data/few-joints/scara.urdf"),
+            ),
+            (
+                include_str!("../../tests/data/few-joints/desk-arm-5.toml"),
+                include_str!("../../tests/data/few-joints/desk-arm-5.urdf"),
+            ),
+            (
+                include_str!("../../tests/data/few-joints/desk-arm-4.toml"),
+                include_str!("../../tests/data/few-joints/desk-arm-4.urdf"),
+            ),
+        ]
+        .map(|(text, urdf)| {
+            let loaded = Loaded::new(Source::from_text(text, "the robot").unwrap(), Some(urdf)).unwrap();
+            loaded.robot(Limits::Soft, [0.3, -0.2, 0.7]).unwrap()
+        })
+    }
+
+    /// Hand poses of random configurations, seen from elsewhere.
+    fn poses(robot: &FileRobot, rng: &mut Xoshiro256PlusPlus) -> Vec<Isometry3<f64>> {
+        let pose = |rng: &mut Xoshiro256PlusPlus| {
+            let values: Vec<_> = robot.limits.iter().map(|limit| rng.random_range(limit.lower..limit.upper)).collect();
+            let base = [rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0), rng.random_range(-3.0..3.0)];
+            robot.world_from_tool(&Configuration { base, arm: Joints::from_values(&values).unwrap() })
+        };
+        (0..200).map(|_| pose(rng)).collect()
+    }
+
+    #[test]
+    fn from_the_base_that_is_drawn_the_arm_comes_to_the_pose() {
+        for robot in robots() {
+            let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
+            let few = robot.few.as_ref().unwrap();
+            let mut found = 0;
+            for pose in poses(&robot, &mut rng) {
+                let Some(base) = few.base_for(&pose, &mut rng) else { continue };
+                assert!(robot.may_reach(&base, &pose));
+                let Some(arm) = robot.inverse(&base, &pose, &mut rng) else { continue };
+                let reached = robot.world_from_tool(&Configuration { base, arm });
+                assert!((reached.translation.vector - pose.translation.vector).norm() < 1e-9);
+                found += 1;
+            }
+            assert!(found >= 190, "{found} of 200");
+        }
+    }
+
+    #[test]
+    fn what_is_turned_as_the_arm_wants_it_is_reached() {
+        for robot in robots() {
+            let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
+            let few = robot.few.as_ref().unwrap();
+            let base = [0.3, -0.2, 0.7];
+            let (mut found, mut as_drawn) = (0, 0);
+            for _ in 0..200 {
+                let values: Vec<_> =
+                    robot.limits.iter().map(|limit| rng.random_range(limit.lower..limit.upper)).collect();
+                let pose = robot.world_from_tool(&Configuration { base, arm: Joints::from_values(&values).unwrap() });
+                // What the hand holds is ahead of it, and was turned by chance.
+                let ahead = pose * nalgebra::Point3::new(0.1, 0.0, 0.0);
+                let centre = Point2::new(ahead.x, ahead.y);
+                let about = |angle: f64| {
+                    let middle = Translation3::new(centre.x, centre.y, 0.0);
+                    middle * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle) * middle.inverse()
+                };
+                let drawn = about(rng.random_range(-3.0..3.0)) * pose;
+                as_drawn += u32::from(robot.inverse(&base, &drawn, &mut rng).is_some());
+                let Some(turn) = few.turn(&base, &drawn, &centre, &mut rng) else { continue };
+                found += u32::from(robot.inverse(&base, &(about(turn) * drawn), &mut rng).is_some());
+            }
+            assert!(found >= 190, "{found} of 200, {as_drawn} as they were drawn");
+            println!("{found} of 200, {as_drawn} as they were drawn");
+        }
+    }
 }

@@ -141,6 +141,10 @@ fn understood(loaded: &Loaded, robot: &FileRobot, pairs: &Pairs, reach_down: Opt
         1e3 * hand.tip_beyond_tool_m(0.0),
         2e3 * hand.tip_half_width_m()
     ));
+    let straightened = &loaded.amended.straightened;
+    if !straightened.is_empty() {
+        lines.push(format!("straight: angles of {} are taken as right ones", straightened.join(", ")));
+    }
     if let Some(semantic) = &loaded.semantic {
         lines.push(format!("srdf:     {}", semantic.path.display()));
     }

@@ -7,9 +7,9 @@ use nalgebra::Isometry3;
 use rand::Rng;
 
 use super::chain::{Driver, Layout};
-use super::few_joints::ANY_POSE;
 use crate::problem_file::Limits;
 use crate::robot_file::Amended;
+use crate::robot_file::amend::ANY_POSE;
 
 /// The inverse of an arm, from the frame of its base to its tool.
 #[derive(Debug, Clone)]
