@@ -11,7 +11,7 @@ use darrt_task::file_robot::inspect::inspect;
 use darrt_task::file_robot::{FileRobot, guess, trial};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::planning::{PlanRequest, plan};
-use darrt_task::problem_file::ProblemFile;
+use darrt_task::problem_file::{GraspFamily, ProblemFile};
 use darrt_task::registry::Registry;
 
 const ROBOTS: [(&str, &str, &str); 3] = [
@@ -73,6 +73,20 @@ fn solved(seeds: u64) {
 #[test]
 fn they_pick_and_place() {
     solved(1);
+}
+
+#[test]
+fn a_hand_that_points_down_is_not_searched_with_for_a_grasp_from_the_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = files(folder.path()).remove(0);
+    let mut problem = first_problem(&file);
+    assert!(planned(&problem, 0).is_some());
+    problem.objects.iter_mut().for_each(|object| object.grasps = vec![GraspFamily::Side]);
+    let refused = plan(&Registry::<FileRobot>::new(), &PlanRequest::new(problem, 0), &Cancel::new(), &mut Silent);
+    let refused = refused.unwrap_err();
+    assert!(refused.is_impossible(), "{refused}");
+    let why = "the hand is always tilted alike, and no grasp of it (`side`) is tilted so";
+    assert!(refused.to_string().ends_with(why), "{refused}");
 }
 
 /// `cargo test -p darrt-task --test few_joints -- --ignored`

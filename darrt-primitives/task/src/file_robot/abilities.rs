@@ -34,7 +34,8 @@ pub(super) fn lines(robot: &FileRobot) -> Vec<String> {
     match ties.pushing(false) {
         None => {}
         Some(None) => {
-            lines.push("tilt:     the hand is always tilted alike, its fingers not side by side: no pushing".into())
+            lines
+                .push("tilt:     the hand is always tilted alike, its fingers not side by side: no pushing".to_owned());
         }
         Some(Some(HandStance { lean, .. })) => {
             let how = if lean < 1e-6 {

@@ -21,8 +21,6 @@ use rand::{Rng, RngExt};
 use super::chain::ArmChain;
 use crate::robot_file::amend::ANY_POSE;
 
-/// Joints of the base.
-const BASE_JOINTS: usize = 3;
 /// Configurations that are kept to begin from.
 const SEEN: usize = 4096;
 /// How many of them are looked at for one descent, and how many descents are tried.
@@ -157,30 +155,33 @@ fn finite(limit: &JointLimit) -> [f64; 2] {
 const GROUND: &str = "ground";
 const TOOL: &str = "tool";
 
+/// A joint of the chain.
+struct Piece {
+    kind: JointKind,
+    at: Isometry3<f64>,
+    axis: Unit<Vector3<f64>>,
+    limit: JointLimit,
+}
+
 /// A description of base and arm as one chain.
 fn description(chain: &ArmChain, limits: &[JointLimit]) -> RobotDescription {
     // As far as the tool may be from the base.
     let slides = chain.joints.iter().zip(limits).filter(|(joint, _)| joint.slides);
-    let slides: f64 = slides.map(|(_, limit)| limit.lower.abs().max(limit.upper.abs())).sum();
-    let bones: f64 = chain.joints.iter().map(|joint| joint.before.translation.vector.norm()).sum();
-    let out = JointLimit::new(0.0, bones + slides + chain.wrist_from_tool.translation.vector.norm());
-    let (here, up, ahead) = (Isometry3::identity(), Vector3::z_axis(), Vector3::x_axis());
-    let (turns, slides) = (JointKind::Turning, JointKind::Sliding);
-    let base: [(JointKind, Isometry3<f64>, Unit<Vector3<f64>>, JointLimit); BASE_JOINTS] = [
-        (turns, here, up, JointLimit::UNLIMITED),
-        (slides, here, ahead, out),
-        (turns, here, up, JointLimit::UNLIMITED),
-    ];
-    let arm = chain
-        .joints
-        .iter()
-        .zip(limits)
-        .map(|(joint, limit)| (if joint.slides { slides } else { turns }, joint.before, joint.axis, *limit));
-    let tool = (JointKind::Fixed, chain.wrist_from_tool, up, JointLimit::UNLIMITED);
+    let slides_m: f64 = slides.map(|(_, limit)| limit.lower.abs().max(limit.upper.abs())).sum();
+    let bones_m: f64 = chain.joints.iter().map(|joint| joint.before.translation.vector.norm()).sum();
+    let out = JointLimit::new(0.0, bones_m + slides_m + chain.wrist_from_tool.translation.vector.norm());
+    let piece = |kind, at, axis, limit| Piece { kind, at, axis, limit };
+    let turn = || piece(JointKind::Turning, Isometry3::identity(), Vector3::z_axis(), JointLimit::UNLIMITED);
+    let base = [turn(), piece(JointKind::Sliding, Isometry3::identity(), Vector3::x_axis(), out), turn()];
+    let arm = chain.joints.iter().zip(limits).map(|(joint, limit)| {
+        let kind = if joint.slides { JointKind::Sliding } else { JointKind::Turning };
+        piece(kind, joint.before, joint.axis, *limit)
+    });
+    let tool = piece(JointKind::Fixed, chain.wrist_from_tool, Vector3::z_axis(), JointLimit::UNLIMITED);
     let link = |name: &str| LinkDescription { name: name.into(), collision: Vec::new(), has_visual: false };
     let mut description =
         RobotDescription { name: String::new(), links: vec![link(GROUND)], joints: Vec::new(), root: 0 };
-    for (index, (kind, parent_from_child, axis, limit)) in base.into_iter().chain(arm).chain([tool]).enumerate() {
+    for (index, Piece { kind, at, axis, limit }) in base.into_iter().chain(arm).chain([tool]).enumerate() {
         let is_tool = kind == JointKind::Fixed;
         description.links.push(link(&if is_tool { TOOL.to_owned() } else { format!("link {index}") }));
         description.joints.push(JointDescription {
@@ -188,7 +189,7 @@ fn description(chain: &ArmChain, limits: &[JointLimit]) -> RobotDescription {
             kind,
             parent: index,
             child: index + 1,
-            parent_from_child,
+            parent_from_child: at,
             axis,
             limit,
             soft_limit: limit,

@@ -52,6 +52,7 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     #[test]
+    #[expect(clippy::approx_constant, reason = "as people write them")]
     fn what_is_meant_as_a_right_angle_is_one() {
         let turned = |roll: f64, pitch: f64, yaw: f64| UnitQuaternion::from_euler_angles(roll, pitch, yaw);
         for (written, meant) in [
