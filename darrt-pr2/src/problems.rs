@@ -46,6 +46,9 @@ const HOPELESS: [BuiltIn; 2] = [
     BuiltIn { name: "slippery-fingers", text: include_str!("../scenes/everyday/slippery-fingers.toml") },
 ];
 
+/// For arms of fewer joints than six, each for the robot that it names.
+const FEWER_JOINTS: [BuiltIn; 1] = [BuiltIn { name: "puck", text: include_str!("../scenes/puck.toml") }];
+
 /// All of them; the paper's first.
 pub fn collection() -> Collection {
     Collection::new([
@@ -53,6 +56,7 @@ pub fn collection() -> Collection {
         ProblemGroup { title: "Two tables, several objects", problems: &FURTHER },
         ProblemGroup { title: "Everyday problems, each with one thing that is easy to get wrong", problems: &EVERYDAY },
         ProblemGroup { title: "Without a plan, and the answer says why", problems: &HOPELESS },
+        ProblemGroup { title: "For an arm with few joints", problems: &FEWER_JOINTS },
     ])
 }
 

@@ -9,6 +9,7 @@
 //! | go to a configuration, alone or with an object in the hand | [`travel`] |
 //! | hold the arm so that the base can drive | `fold`, `drive`, `width` |
 //! | find a base and an arm configuration for a hand pose | [`stance`] |
+//! | turn what is round so that an arm of few joints reaches it | [`mod@turned`] |
 //! | know how far the hand must travel to push or grasp | [`approach`] |
 //! | push an object, or make it slide with a hand of your own | [`push`], [`mod@slide`] |
 //! | grasp and lift | [`pick`] |
@@ -31,6 +32,7 @@ pub mod slide;
 pub mod stance;
 pub mod transfer;
 pub mod travel;
+pub mod turned;
 mod width;
 
 /// Instances in the making: each new one starts where the last ended.

@@ -11,12 +11,14 @@
 //! # Source
 //! Section 3 (primitive Push, figure 1) and section 5.1 of the paper.
 
+use std::f64::consts::FRAC_PI_2;
+
 use nalgebra::{Isometry3, Matrix3, Point2, Point3, Rotation3, Unit, UnitQuaternion, Vector2, Vector3};
 
 use crate::error::{PrimitiveError, finite, positive, positive_below, within};
 
-/// Largest lean of a pushing hand from the vertical, radians (75 degrees): nearer to level, fingers are wider than thin
-/// objects are high.
+/// Largest lean of a pushing hand from the vertical that an arm is asked for, radians (75 degrees): nearer to level, fingers are wider
+/// than thin objects are high. A hand that is always level ([`HandTies`](crate::hand_ties::HandTies)) pushes as it is.
 pub const MAX_LEAN: f64 = 75.0 * std::f64::consts::PI / 180.0;
 
 /// Two fingers and the disc they push.
@@ -36,12 +38,21 @@ pub struct Fingertips {
     pub half_width: f64,
 }
 
+impl Fingertips {
+    /// Height of the tool origin when their lowest point is at the height `lowest` and the hand leans like this, metres.
+    pub fn tool_height(&self, lowest: f64, stance: &HandStance) -> f64 {
+        let (sin, cos) = stance.lean.sin_cos();
+        lowest + self.beyond_tool * cos + self.half_width * sin
+    }
+}
+
 /// How the hand stands behind the disc.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HandStance {
     /// Turned by 180 degrees about its own axis: the fingers change places.
     pub twin: bool,
-    /// Lean about the finger axis, radians in `[0, MAX_LEAN]`: the fingertips go ahead, the wrist trails behind the push.
+    /// Lean about the finger axis, radians, 0 for a hand that points down, at most pi / 2 for a level one: the fingertips go ahead,
+    /// the wrist trails behind the push.
     pub lean: f64,
 }
 
@@ -97,7 +108,7 @@ impl RimContact {
     /// When the lean is out of range, or the heights are not finite or not in order.
     pub fn setback(&self, heights: &PushHeights, stance: &HandStance) -> Result<f64, PrimitiveError> {
         let Fingertips { beyond_tool, half_width } = self.tips;
-        let lean = within("hand lean", stance.lean, 0.0, MAX_LEAN)?;
+        let lean = within("hand lean", stance.lean, 0.0, FRAC_PI_2)?;
         let top = finite("upper edge of the disc", heights.top)?;
         let height = positive("height of the disc above the fingertips", top - finite("fingertips", heights.tips)?)?;
         let (sin, cos) = lean.sin_cos();
@@ -110,8 +121,7 @@ impl RimContact {
 
     /// Height of the tool origin above what the disc slides on, metres.
     pub fn tool_height(&self, heights: &PushHeights, stance: &HandStance) -> f64 {
-        let (sin, cos) = stance.lean.sin_cos();
-        heights.tips + self.tips.beyond_tool * cos + self.tips.half_width * sin
+        self.tips.tool_height(heights.tips, stance)
     }
 
     /// How much the fingertips press the disc down for each newton with which they push it ahead: 0 where the front of the

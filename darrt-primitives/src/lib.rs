@@ -18,6 +18,7 @@
 //! | where can robot and objects be? | [`mobile_arm_space`], [`object_space`], [`tabletop`] |
 //! | what is held, what rests on what? | [`mode`] |
 //! | which primitives are there, and what do they promise? | [`primitive`], [`contract`] |
+//! | to which poses can the hand not come, whatever the joints? | [`hand_ties`] |
 //! | how do objects slide when pushed? | [`push`], [`contact`] |
 //! | how can an object be held? | [`grasp`] |
 //! | how far may what is held lean? | [`tilt`] |
@@ -44,6 +45,7 @@ pub mod error;
 pub mod execution_time;
 pub mod goal;
 pub mod grasp;
+pub mod hand_ties;
 pub mod heading_drive;
 pub mod joints;
 pub mod kinematics;

@@ -5,9 +5,10 @@
 use std::fmt::Debug;
 
 use darrt_geom::body::Body;
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point2, Vector3};
 use rand::Rng;
 
+use crate::hand_ties::HandTies;
 use crate::kinematics::JointLimit;
 use crate::object_space::upright;
 
@@ -261,6 +262,19 @@ pub trait Manipulator: Send + Sync + 'static {
     /// Pairs of links (indices into [`Manipulator::links`]) that can collide and must be checked.
     fn self_pairs(&self) -> &[(usize, usize)];
 
+    /// By how much to turn `world_from_tool` about the vertical through `centre` (world x, y), so that the arm reaches it from this
+    /// base; radians. Asked for what looks alike from all sides. `None` (the default) where it is not to be turned: an arm of six
+    /// joints or more comes to poses at any heading, one of fewer to some.
+    fn turn_to_reach(
+        &self,
+        _base: &[f64; 3],
+        _world_from_tool: &Isometry3<f64>,
+        _centre: &Point2<f64>,
+        _rng: &mut dyn Rng,
+    ) -> Option<f64> {
+        None
+    }
+
     /// Writes the world pose of every link, in the order of [`Manipulator::links`]. `out` has as many places.
     fn link_poses(&self, q: &Configuration<Self::Joints>, gap_m: f64, out: &mut [Isometry3<f64>]);
 
@@ -291,6 +305,12 @@ pub trait Manipulator: Send + Sync + 'static {
     /// The largest force with which the arm can push sideways, newton; infinite (the default): never the limit.
     fn push_force_n(&self) -> f64 {
         f64::INFINITY
+    }
+
+    /// What neither the joints nor the base change of the pose of the hand; by default nothing is tied. A hand that is tied is asked
+    /// to stand nowhere else: Push leans it as it leans, at the height at which it is.
+    fn hand_ties(&self) -> HandTies {
+        HandTies::default()
     }
 
     /// Typical metres of hand travel per unit of each joint: weights of the arm's distance.

@@ -10,6 +10,7 @@ use nalgebra::{Isometry3, Point2, Point3, Rotation2, Vector2};
 
 use super::pick::overhangs;
 use super::push::Pushable;
+use crate::contact::HandStance;
 use crate::manipulator::Manipulator;
 use crate::push::edge_stop::EdgeRule;
 use crate::tabletop::{Tabletop, TabletopState};
@@ -35,12 +36,11 @@ pub fn to_push_m<M: Manipulator>(
     let Ok(pushable) = Pushable::new(m, from, object) else { return NO_WAY_M };
     let ends = ends(m, &pushable, &flat(target));
     let tool = tool(m, from);
-    let of_lean = |lean: &f64| {
-        let (setback_m, height_m) = pushable.tool_place(*lean)?;
+    let of_stance = |stance: HandStance| {
+        let (setback_m, height_m) = pushable.tool_place(&stance)?;
         Some(PushCircle { center: pushable.center(), setback_m, height_m }.distance_m(&tool, &ends))
     };
-    let leans = m.settings().push.leans_rad.iter();
-    leans.filter_map(of_lean).min_by(f64::total_cmp).unwrap_or(NO_WAY_M)
+    pushable.stances(m, false).filter_map(of_stance).min_by(f64::total_cmp).unwrap_or(NO_WAY_M)
 }
 
 /// Metres from the tool to the nearest place from which `object` can be grasped as far as its families know

@@ -5,12 +5,13 @@
 
 use darrt_core::domain::Domain;
 use darrt_core::space::ComponentSpace;
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point2, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 
 use super::Chain;
 use super::drive::{Drive, Looks};
 use super::line;
+use super::turned::turned_about;
 use super::width::Widths;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::Held;
@@ -229,10 +230,14 @@ fn carrying<M: Manipulator>(
     let tool = Vector3::new(x + distance_m * bearing.cos(), y + distance_m * bearing.sin(), height_m);
     let at_tool = Isometry3::from_parts(tool.into(), UnitQuaternion::from(turned.rotation));
     let robot = m.manipulator();
-    if !robot.may_reach(&from.robot.base, &at_tool) {
+    let base = &from.robot.base;
+    if !robot.may_reach(base, &at_tool) {
         return None;
     }
-    robot.inverse(&from.robot.base, &at_tool, rng)
+    let centre = Point2::new(tool.x, tool.y);
+    let turn = robot.turn_to_reach(base, &at_tool, &centre, rng);
+    let at_tool = turn.map_or(at_tool, |turn| turned_about(&at_tool, &centre, turn));
+    robot.inverse(base, &at_tool, rng)
 }
 
 /// Does what is held lean no farther than it may while the arm goes straight from `a` to `b`, as far as a few looks tell?

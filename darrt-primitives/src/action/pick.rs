@@ -11,10 +11,12 @@ use super::line::{self, follow_in_room, room_for_hand};
 use super::retreat::retreat;
 use super::slide::approach;
 use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
+use super::turned::turned;
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::grasp::hold::Hold;
 use crate::grasp::rim::{rim_is_graspable, rim_overhangs};
-use crate::grasp::{Grasp, GraspKind};
+use crate::grasp::{Grasp, GraspFamily, GraspKind};
+use crate::hand_ties::HandTies;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Held, TouchReason};
 use crate::primitive;
@@ -59,16 +61,17 @@ pub fn pick<M: Manipulator>(
         if family.needs_overhang() && !overhangs {
             continue;
         }
-        let mut grasp = family.sample(rng);
+        let Some(mut grasp) = drawn_grasp(m, &**family, rng) else { continue };
         grasp.open_gap_m = grasp.open_gap_m.min(m.manipulator().hand().max_gap_m());
-        if !fits(m, from, object, movable, pose, &grasp) {
+        let seen = turned(m, object, &from.robot.base, pose, &grasp.object_from_tool, rng);
+        if !fits(m, from, object, movable, &seen, &grasp) {
             continue;
         }
         let Ok(hold) = m.hold(movable, &**family, &grasp) else {
             why = Infeasible::NoHold;
             continue;
         };
-        let at_grasp = grasp.world_from_tool(pose);
+        let at_grasp = grasp.world_from_tool(&seen);
         let tries = m.settings().base_tries.div_ceil(2);
         let wanted = Wanted { world_from_tool: &at_grasp, tries, base: None };
         let mode = beside.opened_to(grasp.open_gap_m).ok_or(Infeasible::NoGrasp)?;
@@ -117,6 +120,19 @@ impl Picking<'_> {
     fn held(&self, tool_from_object: Isometry3<f64>) -> Held {
         Held { object: self.object, tool_from_object, max_tilt_rad: self.hold.max_tilt_rad }
     }
+}
+
+/// A grasp of the family for a hand that may be tilted as it likes, or one of its grid for which the hand is tilted as it is, the
+/// object upright; `None` where there is none.
+pub fn drawn_grasp<M: Manipulator>(m: &Tabletop<M>, family: &dyn GraspFamily, rng: &mut dyn Rng) -> Option<Grasp> {
+    let ties = HandTies { height_m: None, ..m.manipulator().hand_ties() };
+    if ties.up_in_tool.is_none() {
+        return Some(family.sample(rng));
+    }
+    let mut fitting = family.grid();
+    fitting.retain(|grasp| ties.allow(&grasp.object_from_tool));
+    let index = rng.random_range(0..fitting.len().max(1));
+    fitting.get(index).copied()
 }
 
 /// How many grasps are drawn for one that is tried: most rim grasps meet the table.

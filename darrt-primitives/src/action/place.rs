@@ -12,6 +12,7 @@ use super::line::{follow_in_room, room_for_hand};
 use super::retreat::retreat;
 use super::stance::{Care, Probe, Refused, Wanted, stance};
 use super::travel::travel;
+use super::turned::turned;
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::length_range::LengthRange;
 use crate::manipulator::{Configuration, Manipulator};
@@ -65,7 +66,9 @@ pub fn place<M: Manipulator>(
         // At first hand and object are to have all the room that is wanted, then what they need.
         let care = if draw < YAW_DRAWS / 2 { m.collision_scene().most_care() } else { 0 };
         let standing = standing_pose(m, &held, surface, target, rng).ok_or(Infeasible::OffSupport)?;
-        let at_place = standing * held.tool_from_object.inverse();
+        let object_from_tool = held.tool_from_object.inverse();
+        let standing = turned(m, held.object, &from.robot.base, &standing, &object_from_tool, rng);
+        let at_place = standing * object_from_tool;
         before.place(held.object, &standing);
         after.place(held.object, &standing);
         // With the fingers closed as much as opened: the lower one moves beside the surface when it lets go.

@@ -145,8 +145,7 @@ impl<M: Manipulator> Attempt<'_, M> {
         let Self { m, from, pushable, twin, care, .. } = *self;
         let mut refusal = Refusal { why: Infeasible::NoContact, is_of_hand: true };
         let mut chain = None;
-        for &lean in &m.settings().push.leans_rad {
-            let stance_of_hand = HandStance { twin, lean };
+        for stance_of_hand in pushable.stances(m, twin) {
             let place = match HandPlace::new(m, pushable, &course.heading, &stance_of_hand, care, &self.probe) {
                 Ok(place) => place,
                 Err(why) => {

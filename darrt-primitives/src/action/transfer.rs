@@ -10,6 +10,7 @@ use rand::{Rng, RngExt};
 use super::Chain;
 use super::stance::{Probe, Wanted, stance};
 use super::travel::{base_to, travel};
+use super::turned::turned;
 use crate::manipulator::Manipulator;
 use crate::mode::Contacts;
 use crate::object_space::OBJECT_TOLERANCE_M;
@@ -29,7 +30,9 @@ pub fn transfer<M: Manipulator>(
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
     let held = *from.mode.held().ok_or(Infeasible::NoGrasp)?;
     let target = freely_turned(m, held.object.index(), target, rng);
-    let at_target = target * held.tool_from_object.inverse();
+    let object_from_tool = held.tool_from_object.inverse();
+    let target = turned(m, held.object, &base.unwrap_or(from.robot.base), &target, &object_from_tool, rng);
+    let at_target = target * object_from_tool;
     let wanted = Wanted { world_from_tool: &at_target, tries: m.settings().base_tries, base };
     let mut probe = Probe::new(m, from, from.mode.clone());
     let robot = stance(m, from, &wanted, rng, |q, care| probe.check(q, &Contacts::default(), care).map(|()| *q))?;

@@ -17,7 +17,7 @@ use rand::Rng;
 use super::jacobian::KinematicChain;
 use super::limit::{JointLimit, wrap_to_pi};
 use super::tree::{KinematicTree, KinematicsError, expect_length};
-use constants::{Column, Constants, Target};
+use constants::{Column, Constants, PoseError, Target};
 use seeds::Seeds;
 use step::Step;
 
@@ -39,12 +39,22 @@ pub struct InverseOptions {
     pub iterations: usize,
     /// Keep to the soft limits instead of the hard ones.
     pub soft_limits: bool,
+    /// Bring the tool as near to its target as rounding lets it, not only within the tolerances: a chain of fewer joints than six
+    /// reaches a pose that is computed from such an answer only if that is where it says.
+    pub exact: bool,
 }
 
 impl Default for InverseOptions {
     fn default() -> Self {
         // Half of what the laws of a manipulator ask, so that what a caller computes from the joints stays within them.
-        Self { position_tolerance: 5e-10, rotation_tolerance: 5e-10, attempts: 16, iterations: 40, soft_limits: true }
+        Self {
+            position_tolerance: 5e-10,
+            rotation_tolerance: 5e-10,
+            attempts: 16,
+            iterations: 40,
+            soft_limits: true,
+            exact: false,
+        }
     }
 }
 
@@ -66,6 +76,8 @@ pub struct ChainInverse {
 const STUCK_RATIO: f64 = 0.7;
 /// ... after so many iterations.
 const STUCK_AFTER: usize = 4;
+/// Most steps that make an answer exact: each squares what is missing.
+const EXACT_STEPS: usize = 2;
 /// Largest change of one joint in one iteration, rad or m.
 const LONGEST_STEP: f64 = 1.0;
 
@@ -151,7 +163,7 @@ impl ChainInverse {
         let first = Seeds::draw(rng);
         for attempt in 0..self.options.attempts {
             self.seeds.nearest(base_from_tool, first, attempt, &mut joints);
-            if let End::Reached = self.descend(&target, &mut joints, Turns::Free) {
+            if let End::Reached = self.descend(&target, &mut joints, &self.limits, Turns::Free) {
                 self.wrap(&mut joints);
                 return Some(joints);
             }
@@ -174,7 +186,7 @@ impl ChainInverse {
             return None;
         }
         let mut joints: JointValues = near.iter().zip(&self.limits).map(|(value, limit)| limit.clamp(*value)).collect();
-        let End::Reached = self.descend(&Target::new(base_from_tool), &mut joints, Turns::Kept) else {
+        let End::Reached = self.descend(&Target::new(base_from_tool), &mut joints, &self.limits, Turns::Kept) else {
             return None;
         };
         let is_near = joints.iter().zip(near).all(|(value, near)| (value - near).abs() <= max_joint_step);
@@ -182,8 +194,27 @@ impl ChainInverse {
         is_near.then_some(joints)
     }
 
-    /// One descent from `joints`, which lie within the limits and stay there.
-    fn descend(&self, target: &Target, joints: &mut JointValues, turns: Turns) -> End {
+    /// Joint values that bring the tool to `base_from_tool` and lie within `limits`, which are no wider than those of the chain: a joint
+    /// whose limits are one value stays there. One descent from `start`; `None` when it ends elsewhere, or when a length is wrong.
+    pub fn inverse_from(
+        &self,
+        base_from_tool: &Isometry3<f64>,
+        start: &[f64],
+        limits: &[JointLimit],
+    ) -> Option<JointValues> {
+        if start.len() != self.limits.len() || limits.len() != self.limits.len() {
+            return None;
+        }
+        let mut joints: JointValues = start.iter().zip(limits).map(|(value, limit)| limit.clamp(*value)).collect();
+        let End::Reached = self.descend(&Target::new(base_from_tool), &mut joints, limits, Turns::Free) else {
+            return None;
+        };
+        self.wrap(&mut joints);
+        Some(joints)
+    }
+
+    /// One descent from `joints`, which lie within `limits` and stay there.
+    fn descend(&self, target: &Target, joints: &mut JointValues, limits: &[JointLimit], turns: Turns) -> End {
         let mut columns = [Column::default(); MAX_JOINTS];
         let Some(columns) = columns.get_mut(..joints.len()) else {
             return End::Stuck;
@@ -193,10 +224,13 @@ impl ChainInverse {
         for iteration in 0..self.options.iterations {
             let error = self.constants.error(joints, target, columns);
             let (position, rotation) = error.norms();
+            let square = error.square();
             if position <= self.options.position_tolerance && rotation <= self.options.rotation_tolerance {
+                if self.options.exact {
+                    self.make_exact(target, joints, (columns, error), limits);
+                }
                 return End::Reached;
             }
-            let square = error.square();
             best = square.min(best);
             let then = &mut before[iteration % STUCK_AFTER];
             // An error that is no number is never the best one, so that it ends here too.
@@ -204,12 +238,32 @@ impl ChainInverse {
                 return End::Stuck;
             }
             *then = best;
-            let step = Step { columns, error: &error, limits: &self.limits };
+            let step = Step { columns, error: &error, limits };
             if !step.take(joints, turns) {
                 return End::Stuck;
             }
         }
         End::Stuck
+    }
+
+    /// Goes on from where the tool is within the tolerances, as long as it comes nearer.
+    fn make_exact(
+        &self,
+        target: &Target,
+        joints: &mut JointValues,
+        (columns, mut error): (&mut [Column], PoseError),
+        limits: &[JointLimit],
+    ) {
+        for _ in 0..EXACT_STEPS {
+            let before = joints.clone();
+            let moves = Step { columns, error: &error, limits }.take(joints, Turns::Kept);
+            let next = self.constants.error(joints, target, columns);
+            if !moves || next.square().partial_cmp(&error.square()) != Some(std::cmp::Ordering::Less) {
+                *joints = before;
+                return;
+            }
+            error = next;
+        }
     }
 
     fn wrap(&self, joints: &mut JointValues) {

@@ -3,10 +3,12 @@
 //!
 //! [`MAX_JOINTS`]: darrt_primitives::joints::MAX_JOINTS
 
+mod abilities;
 mod apart;
 mod bases;
 mod chain;
 pub mod choose;
+mod few_joints;
 pub mod guess;
 pub mod inspect;
 mod inverse;
@@ -18,22 +20,25 @@ mod sampled;
 mod semantic;
 pub mod shipped;
 mod task;
+mod ties;
 mod travel;
 pub mod trial;
 
 use std::collections::BTreeMap;
 
 use arrayvec::ArrayVec;
+use darrt_primitives::hand_ties::HandTies;
 use darrt_primitives::heading_drive;
 use darrt_primitives::joints::{Joints, MAX_JOINTS};
 use darrt_primitives::kinematics::JointLimit;
 use darrt_primitives::manipulator::{Configuration, Hand, LinkGroup, Manipulator, RobotLink, world_from_base};
 use darrt_primitives::mobile_arm_space::difference;
-use nalgebra::Isometry3;
-use rand::Rng;
+use nalgebra::{Isometry3, Point2};
+use rand::{Rng, RngExt as _};
 
 use bases::Ring;
 use chain::{ArmChain, Place};
+use few_joints::FewJoints;
 use inverse::Inverse;
 use opening::Opening;
 use travel::Levers;
@@ -42,6 +47,9 @@ use crate::robot_file::BaseKind;
 
 /// Largest change of any joint between two steps along a straight line of the hand, radians or metres.
 const LINE_JOINT_STEP: f64 = 0.3;
+
+/// In so large a share what is round is turned for the base where it stands, not approached from another one.
+const STAYS_SHARE: f64 = 0.5;
 
 /// The hand of a robot file.
 #[derive(Debug, Clone)]
@@ -98,6 +106,9 @@ pub struct FileRobot {
     self_pairs: Vec<(usize, usize)>,
     inverse: Inverse,
     ring: Ring,
+    /// For an arm of fewer joints than six.
+    few: Option<FewJoints>,
+    ties: HandTies,
     speeds: Speeds,
     payload_kg: f64,
     push_force_n: f64,
@@ -132,6 +143,16 @@ impl FileRobot {
         let carried = self.links.iter().zip(&self.places).filter(|(_, at)| at.anchor == 1 && at.steps.is_empty());
         let lowest = carried.map(|(link, place)| load::lowest_m(&link.body, &(joint.before * place.offset)));
         lowest.fold(rigid_m, |lowest, m| lowest.min(m - load::ABOVE_FLOOR_M))
+    }
+
+    /// An arm configuration that brings the tool to `base_from_tool`; for an arm of fewer joints than six, turned about its own vertical.
+    fn arm_at(&self, base_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> Option<Joints> {
+        let base = [0.0; 3];
+        if !self.may_reach(&base, base_from_tool) {
+            return None;
+        }
+        let turned = self.few.as_ref().and_then(|few| few.turned(&base, base_from_tool, rng));
+        self.inverse(&base, &turned.unwrap_or(*base_from_tool), rng)
     }
 
     /// The height of the first joint, metres.
@@ -172,11 +193,31 @@ impl Manipulator for FileRobot {
     }
 
     fn base_for(&self, world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] {
-        self.ring.base_for((&self.chain, &self.limits), world_from_tool, rng)
+        // The base of an arm that does not come to any pose must stand where it comes to this one.
+        let few = self.few.as_ref().filter(|_| !self.ring.is_fixed());
+        let base = few.and_then(|few| few.base_for(world_from_tool, rng));
+        base.unwrap_or_else(|| self.ring.base_for((&self.chain, &self.limits), world_from_tool, rng))
+    }
+
+    fn turn_to_reach(
+        &self,
+        base: &[f64; 3],
+        world_from_tool: &Isometry3<f64>,
+        centre: &Point2<f64>,
+        rng: &mut dyn Rng,
+    ) -> Option<f64> {
+        let few = self.few.as_ref()?;
+        // A base that drives may as well stand elsewhere.
+        let stays = self.ring.is_fixed() || rng.random_bool(STAYS_SHARE);
+        if stays { few.turn(base, world_from_tool, centre, rng) } else { None }
     }
 
     fn may_reach(&self, base: &[f64; 3], world_from_tool: &Isometry3<f64>) -> bool {
-        self.ring.may_reach(base, world_from_tool)
+        self.ties.allow(world_from_tool) && self.ring.may_reach(base, world_from_tool)
+    }
+
+    fn hand_ties(&self) -> HandTies {
+        self.ties
     }
 
     fn links(&self) -> &[RobotLink] {

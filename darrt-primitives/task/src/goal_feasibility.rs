@@ -11,9 +11,10 @@ use darrt_primitives::primitive::{PICK, PUSH};
 use darrt_primitives::push::Friction;
 use darrt_primitives::push::steady::SlidingDisc;
 
-use crate::grasp_families::why_none_holds;
+use crate::grasp_families::{why_none_fits_tilt, why_none_holds};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{GoalState, GoalTarget, Object, ObjectGoal, ProblemFile};
+use crate::tied_hand::{why_not_lifted, why_not_pushed};
 
 /// Checks that for every object some goal may hold at the start, or that it can be moved as that goal needs.
 ///
@@ -70,17 +71,26 @@ impl<'a> Feasibility<'a> {
         let slides = any(Contract::slides);
         let is_own = |does: bool, id: PrimitiveId| does && !is_allowed(id);
         let pick = fit(takes, "`Pick` is not among the primitives");
+        let ties = robot.hand_ties();
+        let lifts = || why_not_lifted(&ties).map_or(Ok(()), Err);
+        let fits = |()| why_none_fits_tilt(object, robot.hand(), &ties).map_or(Ok(()), Err);
         let pick = if is_own(takes, PICK) {
             pick
         } else {
-            pick.and(fit(!object.grasps.is_empty(), "it has no `grasps` for Pick")).and_then(holds)
+            lifts()
+                .and(pick)
+                .and(fit(!object.grasps.is_empty(), "it has no `grasps` for Pick"))
+                .and_then(fits)
+                .and_then(holds)
         };
         let place = pick.clone().and(fit(lets_go, "`Place` is not among the primitives"));
         let push = fit(slides, "`Push` is not among the primitives");
         let push = if is_own(slides, PUSH) {
             push
         } else {
-            push.and(fit(object.pushable(), "it is not `pushable`")).and_then(|()| steady(problem, object, robot))
+            let is_beside = |()| why_not_pushed(problem, object, robot).map_or(Ok(()), Err);
+            let push = push.and(fit(object.pushable(), "it is not `pushable`")).and_then(is_beside);
+            push.and_then(|()| steady(problem, object, robot))
         };
         Self { object, pick, place, push }
     }

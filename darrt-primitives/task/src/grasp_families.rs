@@ -7,6 +7,7 @@ use darrt_primitives::grasp::overhead::{OverheadGrasps, WallGrasps, WallOptions}
 use darrt_primitives::grasp::rim::{Rim, RimGrasps, RimOptions};
 use darrt_primitives::grasp::side::SideGrasps;
 use darrt_primitives::grasp::{Grasp, GraspFamily as Family, Grip};
+use darrt_primitives::hand_ties::HandTies;
 use darrt_primitives::manipulator::Hand;
 
 use crate::problem_file::{GraspFamily, LengthRange, Object, PlateRim, RimGrasp, ShapeSpec};
@@ -52,6 +53,17 @@ pub fn why_none_holds(object: &Object, hand: &dyn Hand, payload_kg: f64) -> Opti
         return Some(first.clone());
     }
     Some(reasons.iter().map(|(family, reason)| format!("`{family}`: {reason}")).collect::<Vec<_>>().join("; "))
+}
+
+/// Why no grasp of the object fits the tilt of a hand that is always tilted alike, the object upright; `None` if one does, or if there is
+/// none that can be judged.
+pub fn why_none_fits_tilt(object: &Object, hand: &dyn Hand, ties: &HandTies) -> Option<String> {
+    let ties = HandTies { height_m: None, ..*ties };
+    ties.up_in_tool?;
+    let families = families(object, hand).ok().filter(|families| !families.is_empty())?;
+    let fits = families.iter().flat_map(|family| family.grid()).any(|grasp| ties.allow(&grasp.object_from_tool));
+    let names: Vec<_> = object.grasps.iter().map(|family| format!("`{}`", name_of(*family))).collect();
+    (!fits).then(|| format!("the hand is always tilted alike, and no grasp of it ({}) is tilted so", names.join(", ")))
 }
 
 /// Of what is said about two grasps, that about the one that holds, or is nearer to holding.

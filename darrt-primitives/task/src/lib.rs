@@ -46,6 +46,7 @@ mod supports;
 mod testing;
 pub mod text;
 pub mod text_file;
+mod tied_hand;
 pub mod toml_error;
 pub mod trajectory;
 pub mod verify;

@@ -11,6 +11,7 @@ pub mod built_hand;
 pub mod error;
 mod pads;
 pub mod read;
+mod straight;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

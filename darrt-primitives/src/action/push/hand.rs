@@ -9,6 +9,7 @@ use crate::action::line::{moved, room_for_hand};
 use crate::action::slide::{SlidingHand, contacts};
 use crate::action::stance::Probe;
 use crate::contact::{Fingertips, HandStance, PushHeights, RimContact};
+use crate::hand_ties::HandTies;
 use crate::length_range::LengthRange;
 use crate::manipulator::Manipulator;
 use crate::mode::{Contacts, SurfaceId};
@@ -37,6 +38,9 @@ pub(in crate::action) struct Pushable<'a> {
     pub(super) contact: RimContact,
     disc: SlidingDisc,
     heights: PushHeights,
+    /// Lowest that the fingertips may be, metres above the surface.
+    least_tips_m: f64,
+    ties: HandTies,
 }
 
 impl<'a> Pushable<'a> {
@@ -60,12 +64,38 @@ impl<'a> Pushable<'a> {
         let tips = Fingertips { beyond_tool: hand.tip_beyond_tool_m(gap_m), half_width: hand.tip_half_width_m() };
         let contact = RimContact::new(disc.radius_m, gap_m, tips).map_err(|_| Infeasible::NoContact)?;
         let top = 2.0 * movable.half_height_m;
-        let heights = PushHeights { tips: settings.fingertip_clearance_m.max(TIPS_AT * top), top };
-        if heights.tips >= heights.top {
-            // The fingertips would pass above it.
-            return Err(Infeasible::NoContact);
+        let least_tips_m = settings.fingertip_clearance_m;
+        let heights = PushHeights { tips: least_tips_m.max(TIPS_AT * top), top };
+        let ties = m.manipulator().hand_ties();
+        let pushable = Self { object, on, surface, pose, gap_m, contact, disc, heights, least_tips_m, ties };
+        let is_beside = |stance: &HandStance| pushable.heights_of(stance).is_some();
+        // The fingertips would pass above it.
+        if pushable.stances(m, false).any(|stance| is_beside(&stance)) {
+            Ok(pushable)
+        } else {
+            Err(Infeasible::NoContact)
         }
-        Ok(Self { object, on, surface, pose, gap_m, contact, disc, heights })
+    }
+
+    /// How the hand may stand, in the order in which it is tried; `twin` is for those that may stand either way round.
+    pub(in crate::action) fn stances<M: Manipulator>(
+        &self,
+        m: &'a Tabletop<M>,
+        twin: bool,
+    ) -> impl Iterator<Item = HandStance> + use<'a, M> {
+        let tied = self.ties.pushing(twin);
+        let leans = if tied.is_some() { &[][..] } else { &m.settings().push.leans_rad };
+        leans.iter().map(move |lean| HandStance { twin, lean: *lean }).chain(tied.flatten())
+    }
+
+    /// At which heights a hand in this stance pushes; `None` where it would meet the surface or pass above the object.
+    fn heights_of(&self, stance: &HandStance) -> Option<PushHeights> {
+        let PushHeights { mut tips, top } = self.heights;
+        if let Some(tied_m) = self.ties.height_m {
+            let at_surface = PushHeights { tips: 0.0, top };
+            tips = tied_m - self.surface.height() - self.contact.tool_height(&at_surface, stance);
+        }
+        (tips >= self.least_tips_m && tips < top).then_some(PushHeights { tips, top })
     }
 
     /// What the push needs, if it holds.
@@ -93,20 +123,20 @@ impl<'a> Pushable<'a> {
         Point2::new(self.pose.translation.x, self.pose.translation.y)
     }
 
-    /// How far behind the centre the tool stands to push with this lean, and how high, world z; metres. `None` where such a
+    /// How far behind the centre the tool stands to push in this stance, and how high, world z; metres. `None` where such a
     /// hand does not push, but passes above the object or presses it down.
-    pub(in crate::action) fn tool_place(&self, lean: f64) -> Option<(f64, f64)> {
-        let stance = HandStance { lean, ..HandStance::default() };
-        let jams = self.disc.table.coefficient() * self.contact.pressing_down(&self.heights, &stance);
-        let setback_m = self.contact.setback(&self.heights, &stance).ok().filter(|_| jams <= MOST_JAMMING)?;
-        Some((setback_m, self.surface.height() + self.contact.tool_height(&self.heights, &stance)))
+    pub(in crate::action) fn tool_place(&self, stance: &HandStance) -> Option<(f64, f64)> {
+        let heights = self.heights_of(stance)?;
+        let jams = self.disc.table.coefficient() * self.contact.pressing_down(&heights, stance);
+        let setback_m = self.contact.setback(&heights, stance).ok().filter(|_| jams <= MOST_JAMMING)?;
+        Some((setback_m, self.surface.height() + self.contact.tool_height(&heights, stance)))
     }
 
     /// The hand behind the object to push it along `direction`.
     fn at_contact(&self, direction: &Unit<Vector2<f64>>, stance: &HandStance) -> Option<Isometry3<f64>> {
-        self.tool_place(stance.lean)?;
-        let height_m = self.surface.height();
-        self.contact.world_from_tool(&self.center(), direction, height_m, &self.heights, stance).ok()
+        self.tool_place(stance)?;
+        let (height_m, heights) = (self.surface.height(), self.heights_of(stance)?);
+        self.contact.world_from_tool(&self.center(), direction, height_m, &heights, stance).ok()
     }
 }
 

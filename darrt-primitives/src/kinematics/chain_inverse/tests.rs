@@ -184,3 +184,46 @@ fn what_is_no_chain_is_refused() {
     assert!(matches!(new("mount", "mount"), Err(KinematicsError::NoJoint { .. })));
     assert!(new("mount", "probe").unwrap().base_from_tool(&[0.0]).is_err());
 }
+
+#[test]
+fn joints_that_are_held_stay_where_they_are() {
+    let inverse = generic();
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(5);
+    let mut found = 0;
+    for _ in 0..100 {
+        let joints = random(&inverse, &mut rng);
+        let target = inverse.base_from_tool(&joints).unwrap();
+        let mut limits: Vec<_> = inverse.limits().to_vec();
+        limits[1] = JointLimit::new(joints[1], joints[1]);
+        let mut start = joints.clone();
+        start.iter_mut().skip(2).for_each(|value| *value += 0.05);
+        let Some(answer) = inverse.inverse_from(&target, &start, &limits) else { continue };
+        assert_eq!(answer[1], joints[1]);
+        assert_reaches(&inverse, &answer, &target);
+        found += 1;
+    }
+    assert!(found >= 90, "{found} of 100");
+    let joints = random(&inverse, &mut rng);
+    assert_eq!(inverse.inverse_from(&Isometry3::identity(), &joints[1..], inverse.limits()), None);
+    assert_eq!(inverse.inverse_from(&Isometry3::identity(), &joints, &inverse.limits()[1..]), None);
+}
+
+/// A pose that is computed from an answer is reached as well, by an arm that reaches few.
+#[test]
+fn an_exact_answer_is_as_near_as_rounding_lets_it_be() {
+    let tree = KinematicTree::new(&RobotDescription::from_text(&arms::planar()).unwrap()).unwrap();
+    let farthest = |exact: bool| {
+        let options = InverseOptions { exact, ..InverseOptions::default() };
+        let inverse = ChainInverse::new(&tree, arms::BASE, arms::TOOL, &Isometry3::identity(), options).unwrap();
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(6);
+        let missing = (0..500).filter_map(|_| {
+            let target = inverse.base_from_tool(&random(&inverse, &mut rng)).unwrap();
+            let joints = inverse.inverse(&target, &mut rng)?;
+            let reached = inverse.base_from_tool(&joints).unwrap();
+            Some((reached.translation.vector - target.translation.vector).norm())
+        });
+        missing.fold(0.0, f64::max)
+    };
+    let [rough, exact] = [false, true].map(farthest);
+    assert!(exact < 1e-14 && rough > 10.0 * exact, "{rough} {exact}");
+}

@@ -15,8 +15,10 @@ use darrt_core::space::ComponentSpace as _;
 use darrt_core::state::ObjectId;
 use darrt_core::validity::{Blame, BlockKind};
 use darrt_primitives::action::line::{follow, follow_in_room, moved, room_for_hand};
+use darrt_primitives::action::pick::drawn_grasp;
 use darrt_primitives::action::place::ON_SURFACE_M;
 use darrt_primitives::action::stance::{Probe, Refused};
+use darrt_primitives::action::turned::turned;
 use darrt_primitives::goal::{Grip, TabletopGoal};
 use darrt_primitives::grasp::rim::{rim_is_graspable, rim_overhangs};
 use darrt_primitives::grasp::{Grasp, GraspFamily, GraspKind};
@@ -327,7 +329,7 @@ fn draw<'a, M: Manipulator>(
 ) -> Option<(Grasp, &'a dyn GraspFamily)> {
     let count = movable.grasps.len();
     let family = movable.grasps.get(if count > 0 { rng.random_range(0..count) } else { 0 })?;
-    let mut grasp = family.sample(rng);
+    let mut grasp = drawn_grasp(m, &**family, rng)?;
     grasp.open_gap_m = grasp.open_gap_m.min(m.manipulator().hand().max_gap_m());
     m.hold(movable, &**family, &grasp).ok()?;
     Some((grasp, &**family))
@@ -364,7 +366,7 @@ impl<M: Manipulator> Ends<'_, '_, M> {
     fn of_taking(&mut self, case: &Case<'_>) -> Result<Configuration<M::Joints>, End> {
         let (m, id, grasp) = (self.look.m, self.id, &case.grasp);
         self.check_overhang(case)?;
-        let tool = grasp.world_from_tool(&case.pose);
+        let tool = grasp.world_from_tool(&self.turned(case, &case.pose));
         let beside = self.state.mode.engaged_with(id).and_then(|mode| mode.opened_to(grasp.open_gap_m));
         let Some(beside) = beside else { return Err(End::at(Stage::Hold)) };
         let open = straddling(id, grasp);
@@ -411,7 +413,7 @@ impl<M: Manipulator> Ends<'_, '_, M> {
         let Some(released) = released else { return Err(End::at(Stage::Hold)) };
         let standing = m.surface(surface).map_or(case.pose.translation.z, |s| s.height() + self.movable.half_height_m);
         let (yaw, at) = (case.pose.rotation.euler_angles().2, case.pose.translation.vector);
-        let pose = upright(Vector3::new(at.x, at.y, standing), yaw);
+        let pose = self.turned(case, &upright(Vector3::new(at.x, at.y, standing), yaw));
         let tool = case.grasp.world_from_tool(&pose);
         let (mut before, mut after) = (Probe::new(m, self.state, holding), Probe::new(m, self.state, released));
         before.place(id, &pose);
@@ -442,12 +444,17 @@ impl<M: Manipulator> Ends<'_, '_, M> {
         let holding =
             self.held(case).and_then(|held| self.state.mode.engaged_with(id)?.attached(held, case.grasp.closed_gap_m));
         let Some(holding) = holding else { return Err(End::at(Stage::Hold)) };
-        let tool = case.grasp.world_from_tool(&case.pose);
+        let tool = case.grasp.world_from_tool(&self.turned(case, &case.pose));
         let mut probe = Probe::new(m, self.state, holding);
         probe.place(id, &case.pose);
         let none = Contacts::default();
         probe.check_hand(&tool, &none).map_err(|blame| self.blamed(Stage::Hand, Some(blame)))?;
         self.stand(&tool, |this, q| this.check(&mut probe, q, &none))
+    }
+
+    /// Where the object is, turned as the arm wants it if it looks alike from all sides.
+    fn turned(&mut self, case: &Case<'_>, pose: &Isometry3<f64>) -> Isometry3<f64> {
+        turned(self.look.m, self.id, &self.state.robot.base, pose, &case.grasp.object_from_tool, self.rng)
     }
 
     fn check_overhang(&self, case: &Case<'_>) -> Result<(), End> {

@@ -2,17 +2,18 @@
 
 use std::path::Path;
 
-use darrt_primitives::contract::Contract;
+use darrt_primitives::contract::{Contract, HandUse};
 
 use super::FileRobot;
-use super::load;
+use super::load::Loaded;
 use super::shipped;
 use crate::problem_file::{PrimitiveName, ProblemFile};
 use crate::robot::{RobotError, TaskRobot as _};
+use crate::tied_hand::why_not_lifted;
 
 /// The problem with the robot that a person names on a command line, one of [`shipped`] or a robot file, in the place of its own:
 /// the base where it was, the arm at home, through its own postures. Primitives that drive are taken from a robot that is
-/// bolted down. Also what was changed besides, in words.
+/// bolted down, and those with something in the hand from one that does not lift. Also what was changed besides, in words.
 ///
 /// # Errors
 /// [`RobotError`] when there is no such robot, or the problem asks for joints of the other one.
@@ -37,16 +38,23 @@ pub fn with_robot(
     }
     let mut changes = Vec::new();
     problem.transit.postures = FileRobot::posture_names(&problem.robot)?;
-    let (source, _) = load::source(&problem.robot)?;
-    if !source.file.base.kind.drives() {
-        let drives = |name: &PrimitiveName| contracts(name).is_some_and(|contract| contract.drives());
-        let (taken, kept): (Vec<_>, Vec<_>) = problem.primitives.drain(..).partition(drives);
+    let loaded = Loaded::of(&problem.robot)?;
+    let file = &loaded.source.file;
+    let mut leave_out = |is_of: &dyn Fn(&Contract) -> bool, why: &str| {
+        let is_taken = |name: &PrimitiveName| contracts(name).is_some_and(|contract| is_of(&contract));
+        let (taken, kept): (Vec<_>, Vec<_>) = problem.primitives.drain(..).partition(is_taken);
         problem.primitives = kept;
         problem.primitive_settings.retain(|name, _| !taken.contains(name));
         if !taken.is_empty() {
             let names: Vec<_> = taken.iter().map(PrimitiveName::as_str).collect();
-            changes.push(format!("without {}: the base of {} does not drive", names.join(" and "), source.file.name));
+            changes.push(format!("without {}: {why}", names.join(" and ")));
         }
+    };
+    if !file.base.kind.drives() {
+        leave_out(&Contract::drives, &format!("the base of {} does not drive", file.name));
+    }
+    if let Some(why) = why_not_lifted(&loaded.hand_ties()?) {
+        leave_out(&|contract| contract.hand != HandUse::Empty, &format!("{}: {why}", file.name));
     }
     Ok((problem, changes))
 }

@@ -63,9 +63,11 @@ pub fn robot_file(urdf: &Path, beside: &Path, known: &Known) -> Result<String, R
     let bodies = link_bodies(&description, &tree, &places.paths()).map_err(wrong)?;
     let hand = match hand::guess(&tree, &bodies) {
         Some(hand) => hand,
-        None => {
-            wrist::hand(&tree, &bodies).map_err(|why| refuse(&hand::on_a_short_arm(&tree, &bodies).unwrap_or(why)))?
-        }
+        // An arm that takes a hand to any pose comes before one that does not.
+        None => match (wrist::hand(&tree, &bodies), hand::guess_few(&tree, &bodies)) {
+            (Ok(hand), _) | (Err(_), Some(hand)) => hand,
+            (Err(why), None) => return Err(refuse(&hand::on_a_short_arm(&tree, &bodies).unwrap_or(why))),
+        },
     };
     let shapeless = description.links.iter().filter(|link| link.has_visual && link.collision.is_empty());
     let arm = arm(&description, &hand, semantic.as_ref())

@@ -13,7 +13,7 @@ use rand::RngExt as _;
 use super::apart::{distances, drawn_arm};
 use super::load::Loaded;
 use super::sampled::{self, JOINED, Pair, Pairs, Rule};
-use super::{FileRobot, shipped, trial};
+use super::{FileRobot, abilities, shipped, trial};
 use crate::problem_file::Limits;
 use crate::robot_file::{RobotFileError, Source};
 use crate::text::counted;
@@ -89,7 +89,8 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
         odd.push(format!("{}: a law of robots does not hold: {broken}", loaded.source.name));
     }
     let reach_down = reach_down(&robot);
-    if reach_down.is_none() {
+    let pushes = matches!(robot.hand_ties().pushing(false), Some(Some(_)));
+    if reach_down.is_none() && !pushes {
         odd.push(format!(
             "{}:{}: a hand that points down (tool x axis) reaches nowhere around the base; the primitives push, pick and place with it",
             loaded.source.name,
@@ -115,6 +116,7 @@ fn line(pair: &Pair, samples: usize) -> String {
 fn understood(loaded: &Loaded, robot: &FileRobot, pairs: &Pairs, reach_down: Option<([f64; 2], f64)>) -> Vec<String> {
     let file = &loaded.source.file;
     let mut lines = vec![format!("base:     {:?}", file.base.kind).to_lowercase()];
+    lines.extend(abilities::lines(robot));
     for ((name, limit), speed) in loaded.amended.arm_joints.iter().zip(&robot.limits).zip(&robot.speeds.joints) {
         let range = if limit.is_unlimited() {
             "without limits".to_owned()
@@ -139,6 +141,10 @@ fn understood(loaded: &Loaded, robot: &FileRobot, pairs: &Pairs, reach_down: Opt
         1e3 * hand.tip_beyond_tool_m(0.0),
         2e3 * hand.tip_half_width_m()
     ));
+    let straightened = &loaded.amended.straightened;
+    if !straightened.is_empty() {
+        lines.push(format!("straight: angles of {} are taken as right ones", straightened.join(", ")));
+    }
     if let Some(semantic) = &loaded.semantic {
         lines.push(format!("srdf:     {}", semantic.path.display()));
     }
@@ -319,7 +325,7 @@ fn reach_down(robot: &FileRobot) -> Option<([f64; 2], f64)> {
             // In front, and a little to either side: an arm may be mounted there.
             SIDES_M.into_iter().any(|side| {
                 let tool = Isometry3::from_parts(Vector3::new(distance, side, *height).into(), down);
-                robot.may_reach(&[0.0; 3], &tool) && robot.inverse(&[0.0; 3], &tool, &mut rng).is_some()
+                robot.arm_at(&tool, &mut rng).is_some()
             })
         });
         let Some(low) = reached.next() else { continue };

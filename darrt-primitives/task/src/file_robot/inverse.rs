@@ -9,6 +9,7 @@ use rand::Rng;
 use super::chain::{Driver, Layout};
 use crate::problem_file::Limits;
 use crate::robot_file::Amended;
+use crate::robot_file::amend::ANY_POSE;
 
 /// The inverse of an arm, from the frame of its base to its tool.
 #[derive(Debug, Clone)]
@@ -38,7 +39,8 @@ impl Inverse {
         let mount = tree.parent(*first).ok_or_else(lost)?;
         let base_from_mount = layout.place(mount).ok_or_else(lost)?.in_anchor(&[], 0.0);
         let name = tree.link_names().get(mount).ok_or_else(lost)?;
-        let options = InverseOptions { soft_limits: kind == Limits::Soft, ..InverseOptions::default() };
+        let exact = layout.arm_links.len() < ANY_POSE;
+        let options = InverseOptions { soft_limits: kind == Limits::Soft, exact, ..InverseOptions::default() };
         let solver = ChainInverse::new(tree, name, &amended.tool_link, &Isometry3::identity(), options)?;
         let value = |driver: &Driver| if let Driver::Rests(value) = driver { *value } else { 0.0 };
         Ok(Self {

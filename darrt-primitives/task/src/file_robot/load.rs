@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use darrt_geom::{Body, Shape};
+use darrt_primitives::hand_ties::HandTies;
 use darrt_primitives::joints::Joints;
 use darrt_primitives::kinematics::{
     JointLimit, KinematicTree, KinematicsError, MeshPlaces, RobotDescription, link_bodies,
@@ -12,9 +13,11 @@ use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::bases::Ring;
 use super::chain::{ArmChain, Driver, Layout, Place};
+use super::few_joints::FewJoints;
 use super::inverse::Inverse;
 use super::opening::{Law, Opening};
 use super::semantic::Semantic;
+use super::ties::ties;
 use super::travel::{Levers, corners};
 use super::{FileRobot, ParallelHand, Speeds, pairs, shipped};
 use crate::problem_file::Limits;
@@ -126,6 +129,15 @@ impl Loaded {
         self.built(kind, base, true)
     }
 
+    /// What the joints of the arm do not change of its hand.
+    pub(super) fn hand_ties(&self) -> Result<HandTies, RobotFileError> {
+        let (tree, _) = self.solids()?;
+        let chain = self.layout(tree).zip(tree.link_index(&self.amended.tool_link));
+        let chain = chain.and_then(|((layout, _), tool)| layout.chain(tool));
+        let no_layout = || self.source.located(Fault::new("arm", "does not fit the description"));
+        Ok(ties(&chain.ok_or_else(no_layout)?))
+    }
+
     /// The robot wherever its lowest point may be.
     pub(super) fn robot_anywhere(&self) -> Result<FileRobot, RobotFileError> {
         self.built(Limits::Soft, [0.0; 3], false)
@@ -179,6 +191,8 @@ impl Loaded {
             self_pairs,
             inverse,
             ring,
+            few: FewJoints::new(&chain, &limits).map_err(unsolvable)?,
+            ties: ties(&chain),
             speeds,
             weights_m,
             limits,

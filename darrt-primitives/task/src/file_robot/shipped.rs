@@ -24,7 +24,8 @@ macro_rules! shipped {
     };
 }
 
-const ALL: [Shipped; 3] = [shipped!("mobile-arm"), shipped!("panda-arm"), shipped!("table-arm")];
+const ALL: [Shipped; 4] =
+    [shipped!("mobile-arm"), shipped!("panda-arm"), shipped!("planar-arm"), shipped!("table-arm")];
 
 /// All of them.
 pub fn all() -> &'static [Shipped] {

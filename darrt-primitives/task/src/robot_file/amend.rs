@@ -11,11 +11,14 @@ use darrt_primitives::kinematics::{JointLimit, KinematicTree, RobotDescription, 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::error::Fault;
+use super::straight::straighten;
 use super::{BaseKind, RobotFile, pads};
 use std::path::PathBuf;
 
-/// A pose has six degrees of freedom.
-const LEAST_JOINTS: usize = 6;
+/// Where a hand is in a plane, and how it is turned there.
+pub(crate) const LEAST_JOINTS: usize = 3;
+/// So many joints take a hand to any pose.
+pub(crate) const ANY_POSE: usize = 6;
 /// The joint of a rail.
 const RAIL: &str = "rail";
 
@@ -34,6 +37,8 @@ pub struct Amended {
     pub tip_links: [String; 2],
     /// Values of the joints that neither arm nor hand has (rad or m).
     pub rest: Vec<(String, f64)>,
+    /// Joints whose angles were made right ones, which was meant: only of an arm of fewer joints than six.
+    pub straightened: Vec<String>,
 }
 
 /// Completes `description`; `mesh_path` says where the file of a mesh is.
@@ -76,16 +81,19 @@ pub fn amend(
     }
     if arm_joints.len() < LEAST_JOINTS {
         let why = format!(
-            "is moved by {} joints: the primitives bring the hand down from above, at any heading and lean, and lift it straight up; an \
-             arm that can take the hand to such poses has at least {LEAST_JOINTS} joints, a rail among them",
+            "is moved by {} joints: an arm has at least {LEAST_JOINTS}, a rail among them, for a hand that comes to a place and turns \
+             there",
             arm_joints.len()
         );
         return Err(Fault::new("arm.to", why));
     }
+    let is_few = arm_joints.len() < ANY_POSE;
+    let tool = link_index(&description, "tool.link", &tool_link)?;
+    let straightened = if is_few { straighten(&mut description, tool) } else { Vec::new() };
     let wrist_link = description.links[wrist_link].name.to_string();
     let rest = rest(file, &description, &arm_joints)?;
     let tip_links = pads::box_in(file, &mut description, &tool_link, &wrist_link, mesh_path)?;
-    Ok(Amended { description, arm_joints, tool_link, wrist_link, tip_links, rest })
+    Ok(Amended { description, arm_joints, tool_link, wrist_link, tip_links, rest, straightened })
 }
 
 /// The pose at x, y, z, turned by roll, pitch and yaw.

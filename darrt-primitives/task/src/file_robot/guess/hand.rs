@@ -5,6 +5,7 @@ use darrt_primitives::kinematics::tree::{KinematicTree, LinkMotion};
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::robot_file::BuiltHand;
+use crate::robot_file::amend::{ANY_POSE, LEAST_JOINTS};
 use crate::text::counted;
 
 /// How far the tool frame lies before the end of the tips, metres.
@@ -19,8 +20,6 @@ const PARALLEL_RAD: f64 = 1e-6;
 const SAME_M: f64 = 1e-6;
 /// Tips whose distance changes less, metres, do not open.
 const OPENS_M: f64 = 1e-3;
-/// An arm that can take a hand to a pose has so many joints at least.
-const ARM_JOINTS: usize = 6;
 /// A finger has at most so many joints.
 const MOST_FINGER_JOINTS: usize = 3;
 
@@ -51,9 +50,15 @@ struct Finger {
 /// The hand farthest out; `None` if there is nothing like one.
 pub(super) fn guess(tree: &KinematicTree, bodies: &[Option<Body>]) -> Option<HandGuess> {
     // Of two arms the first. What fewer joints carry than an arm has is a head, say.
-    let arms: Vec<_> = hands(tree, bodies).into_iter().filter(|(above, ..)| *above >= ARM_JOINTS).collect();
+    let arms: Vec<_> = hands(tree, bodies).into_iter().filter(|(above, ..)| *above >= ANY_POSE).collect();
     let best = |is_parallel: bool| arms.iter().find(|(_, _, parallel)| *parallel || !is_parallel);
     best(true).or_else(|| best(false)).map(|(_, hand, _)| hand.clone())
+}
+
+/// The hand with two parallel fingers that the most joints carry of those on arms that do not take it to any pose.
+pub(super) fn guess_few(tree: &KinematicTree, bodies: &[Option<Body>]) -> Option<HandGuess> {
+    let few = hands(tree, bodies).into_iter().find(|(above, _, is_parallel)| *is_parallel && *above < ANY_POSE);
+    few.filter(|(above, ..)| *above >= LEAST_JOINTS).map(|(_, hand, _)| hand)
 }
 
 /// Why a hand with two parallel fingers is none for planning: fewer joints carry it than an arm has. `None` if there is none.
@@ -61,8 +66,7 @@ pub(super) fn on_a_short_arm(tree: &KinematicTree, bodies: &[Option<Body>]) -> O
     let (above, hand, _) = hands(tree, bodies).into_iter().find(|(.., is_parallel)| *is_parallel)?;
     let joints = counted(above as u64, "joint");
     Some(format!(
-        "has a hand with two fingers, at `{}`, but only {joints} carry it: an arm that takes a hand to any pose has {ARM_JOINTS} \
-         at least, and is the only kind that is planned with",
+        "has a hand with two fingers, at `{}`, but only {joints} carry it: an arm that is planned with has {LEAST_JOINTS} at least",
         hand.on
     ))
 }

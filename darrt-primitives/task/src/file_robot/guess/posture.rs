@@ -96,7 +96,10 @@ pub(super) fn search(loaded: &Loaded) -> Result<Found, RobotFileError> {
     let kept: Vec<_> = robot.self_pairs().iter().copied().filter(|(a, b)| !is_joined(*a, *b)).collect();
     let tried = Tried { robot: &robot, pairs: &kept, gap_m: robot.hand().max_gap_m(), footprint: footprint(&robot) };
     let found = APART_M.into_iter().find_map(|apart_m| Some((tried.hand_down(apart_m, &mut rng)?, apart_m)));
-    let drawn_in = found.and_then(|(hand_down, apart_m)| tried.drawn_in(&hand_down, apart_m, &mut rng));
+    // A hand that never points down is drawn in from anywhere.
+    let from =
+        found.or_else(|| APART_M.into_iter().find_map(|apart_m| Some((tried.anywhere(apart_m, &mut rng)?, apart_m))));
+    let drawn_in = from.and_then(|(other, apart_m)| tried.drawn_in(&other, apart_m, &mut rng));
     let hand_down = found.map(|(hand_down, _)| hand_down);
     let values = |arm: Joints| arm.as_ref().to_vec();
     Ok(Found { hand_down: hand_down.map(values), drawn_in: drawn_in.map(values), ignore })
@@ -119,6 +122,13 @@ impl Tried<'_> {
         drawn.into_iter().map(|(_, arm)| arm).find(|arm| self.reach(arm).is_some() && self.is_free(arm, apart_m))
     }
 
+    /// Some configuration of an arm that does not lift its hand, or tilt it, in which nothing touches.
+    fn anywhere(&self, apart_m: f64, rng: &mut Stream) -> Option<Joints> {
+        self.robot.hand_ties().up_in_tool?;
+        let mut drawn = (0..TRIES).filter_map(|_| drawn_arm(self.robot, rng));
+        drawn.find(|arm| self.room(arm) >= ROOM && self.reach(arm).is_some() && self.is_free(arm, apart_m))
+    }
+
     /// The configuration that is least in the way of those from which a straight way leads to `other`.
     fn drawn_in(&self, other: &Joints, apart_m: f64, rng: &mut Stream) -> Option<Joints> {
         let mut drawn: Vec<Joints> = (0..TRIES).filter_map(|_| self.down(rng, 0.1..0.5)).collect();
@@ -138,10 +148,7 @@ impl Tried<'_> {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), rng.random_range(-3.1..3.1));
         let down = turn * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::FRAC_PI_2);
         let tool = Isometry3::from_parts(Vector3::new(ahead, side, height).into(), down);
-        if !self.robot.may_reach(&[0.0; 3], &tool) {
-            return None;
-        }
-        self.robot.inverse(&[0.0; 3], &tool, rng)
+        self.robot.arm_at(&tool, rng)
     }
 
     /// How far the joints are from their limits, as a share of half their range.

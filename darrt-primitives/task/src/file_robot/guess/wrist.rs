@@ -9,7 +9,7 @@ use super::hand::{BEHIND_TIPS_M, HandGuess, children, joints_above, variable_of}
 use crate::robot_file::BuiltHand;
 use crate::robot_file::built_hand::{HAND, JOINT, TIPS};
 
-/// An arm has at least so many joints in a row, with nothing else that moves on them.
+/// An arm that is given a hand has at least so many joints in a row, with nothing else that moves on them: fewer are a head or a tail.
 const LEAST_JOINTS: usize = 6;
 /// It is so long at least, metres: what is shorter is a finger.
 const LEAST_M: f64 = 0.25;
@@ -162,7 +162,7 @@ fn is_arm(tree: &KinematicTree, last: usize) -> Result<(), String> {
     let mut row = vec![last];
     for joint in 1..LEAST_JOINTS {
         let Some(next) = above(at) else {
-            let needed = format!("an arm has {LEAST_JOINTS} joints at least");
+            let needed = format!("an arm without a hand is known by {LEAST_JOINTS} joints at least");
             return Err(if joint == 1 {
                 format!("and is one joint: {needed}")
             } else {
