@@ -297,7 +297,8 @@ impl<D: Domain> Trial<'_, D> {
             let state = self.instance.at(self.m, t, self.from);
             self.validity.check_with(care, self.m, &state, &self.instance.contacts)
         };
-        for i in 0..=WITH_CARE {
+        // The first state is the end of the motion before, in the mode of that one: it may be careless.
+        for i in 1..=WITH_CARE {
             let t = free.fraction * f64::from(i) / f64::from(WITH_CARE);
             if let (true, Err(blame)) = (free.fraction > 0.0, check(t)) {
                 let against = format!("free up to {:?} with care {care}", free.fraction);
