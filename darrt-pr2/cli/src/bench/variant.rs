@@ -27,7 +27,7 @@ pub struct Variant {
 }
 
 /// All variants; the first is the planner as it is. A new variant is one line here.
-pub const VARIANTS: [Variant; 30] = [
+pub const VARIANTS: [Variant; 31] = [
     variant("default", "as the problem says", |_| {}),
     variant("robot-or-objects", "samples name the robot or the objects", |r| {
         r.sampler = Some(SamplerName::ROBOT_OR_OBJECTS);
@@ -94,6 +94,9 @@ pub const VARIANTS: [Variant; 30] = [
     variant("portfolio", "the attempts take all searches in turn, 300 iterations each", |r| {
         r.algorithms = Algorithm::ALL.to_vec();
         r.restart = Some(300);
+    }),
+    variant("one-tree", "plans are improved without those of further trees beside them", |r| {
+        r.changes.push(StrategyChange::OneTree);
     }),
     variant("no-improve", "plans stay as they are found", |r| r.as_found = true),
     variant("no-restarts", "one tree until the end", |r| r.problem.budget.restart_iterations = None),

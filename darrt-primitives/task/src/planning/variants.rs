@@ -22,6 +22,8 @@ pub enum StrategyChange {
     NoPenalty,
     /// The first plan is taken as it is.
     NoShortening,
+    /// Plans are improved without those of further trees beside them.
+    OneTree,
     /// Every motion is judged at once, and a node stands every so many metres of travel.
     NodeEvery(f64),
     /// An extension ends after so many metres of travel.
@@ -51,6 +53,11 @@ impl StrategyChange {
             Self::NoShortening => {
                 strategy.shorten = ShortenOptions { extensions: 0 };
                 strategy.extend.defer = false;
+            }
+            Self::OneTree => {
+                if let Some(improvement) = &mut strategy.improve {
+                    improvement.options.further_trees = 0;
+                }
             }
             Self::NodeEvery(spacing_m) => {
                 strategy.extend.spacing_m = spacing_m;
