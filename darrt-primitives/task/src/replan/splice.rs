@@ -5,7 +5,7 @@
 use darrt_core::observe::Observer;
 use nalgebra::Isometry3;
 
-use super::{Old, ReplanRequest, Standing, is_near, near};
+use super::{Old, ReplanRequest, Standing, near};
 use crate::plan_file::{PlanFile, Pose, Step, Waypoint};
 use crate::planning::{PlanRequest, PlanResult, plan_without_clock};
 use crate::planning_error::PlanningError;
@@ -117,11 +117,18 @@ impl Old<'_> {
     /// `begun`, which ends where the old plan is taken up again but for rounding, with the last steps of that behind it.
     fn with_tail(&self, mut begun: PlanFile, join: usize) -> Option<PlanFile> {
         let there = self.end(join);
-        let end = begun.steps.last()?.waypoints.last()?.clone();
+        let mut end = begun.steps.last()?.waypoints.last()?.clone();
         let is_round: Vec<_> =
             self.file.problem.objects.iter().map(|o| (&*o.name, o.symmetry() == Symmetry::Z)).collect();
-        if !is_there(&end, there, &is_round) {
+        // How far the hand is open is no part of a goal: it opens or closes where it stands.
+        let arms = self.arm(&end)?.into_iter().zip(self.arm(there)?);
+        let is_robot_there = arms.chain(end.base.into_iter().zip(there.base)).all(|(a, b)| near(a, b));
+        if !is_robot_there || !are_objects_there(&end, there, &is_round) {
             return None;
+        }
+        if end.joints != there.joints {
+            end.joints.clone_from(&there.joints);
+            begun.steps.last_mut()?.waypoints.push(end.clone());
         }
         let mut tail: Vec<Step> = self.file.steps.get(join..)?.to_vec();
         for (name, is_round) in is_round {
@@ -154,13 +161,12 @@ impl Old<'_> {
     }
 }
 
-/// Do robot and objects stand alike but for rounding? How a round object is turned is nothing that anybody could see.
-fn is_there(a: &Waypoint, b: &Waypoint, objects: &[(&str, bool)]) -> bool {
-    let mut objects = objects.iter().map(|(name, is_round)| {
+/// Do the objects stand alike but for rounding? How a round one is turned is nothing that anybody could see.
+fn are_objects_there(a: &Waypoint, b: &Waypoint, objects: &[(&str, bool)]) -> bool {
+    objects.iter().all(|(name, is_round)| {
         let [Some(a), Some(b)] = [a, b].map(|waypoint| waypoint.objects.get(*name)) else { return false };
         let places = a.position.iter().zip(&b.position).all(|(a, b)| near(*a, *b));
         let [a, b] = [a, b].map(|pose| Isometry3::from(*pose).rotation);
         places && (*is_round || a.angle_to(&b) <= EXACTLY)
-    });
-    is_near(a, b) && objects.all(|is_near| is_near)
+    })
 }
