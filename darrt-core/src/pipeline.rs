@@ -16,7 +16,7 @@ use rand::Rng;
 use crate::budget::{Interrupt, Stop};
 use crate::domain::Domain;
 use crate::extend::Extender;
-use crate::improve::improve;
+use crate::improve::{Improvement, improve};
 use crate::lazy_validation::{NotValidated, validate_steps};
 use crate::plan::Plan;
 use crate::random::{Purpose, stream};
@@ -76,7 +76,7 @@ impl<D: Domain> Pipeline<'_, D> {
 
     /// Plans of further trees, of which the shortest is made shorter still; none where nothing is improved.
     fn further(&self, found: &Plan<D>, rng: &mut dyn Rng) -> Vec<Plan<D>> {
-        let Some(improvement) = self.strategy.improve.as_ref().filter(|_| !self.is_part) else { return Vec::new() };
+        let Some(improvement) = self.improvement() else { return Vec::new() };
         let effort = improvement.options.further(self.key.2);
         let Extender { problem, interrupt, .. } = self.extender;
         let mut plans = further_plans(problem, self.strategy, self.key, effort, interrupt);
@@ -91,10 +91,14 @@ impl<D: Domain> Pipeline<'_, D> {
         plans
     }
 
+    /// How plans are improved, if that is wanted and there is time.
+    fn improvement(&self) -> Option<&Improvement<D>> {
+        self.strategy.improve.as_ref().filter(|_| !self.is_part && self.interrupt.stop().is_none())
+    }
+
     /// A plan better than those that are known that the verifier accepts, if that is wanted and there is time.
     fn improved(&self, known: &[&Plan<D>]) -> Option<Solution<D>> {
-        let improvement =
-            self.strategy.improve.as_ref().filter(|_| !self.is_part && self.interrupt.stop().is_none())?;
+        let improvement = self.improvement()?;
         let (seed, attempt, iteration) = self.key;
         let rng = &mut stream(seed, attempt, iteration, Purpose::Improve);
         let better = improve(&self.extender, improvement, known, iteration, rng)?;

@@ -38,9 +38,14 @@ pub struct HandTies {
 impl HandTies {
     /// May the hand be there, as far as its ties say?
     pub fn allow(&self, world_from_tool: &Isometry3<f64>) -> bool {
+        let is_so_high = self.height_m.is_none_or(|tied| (world_from_tool.translation.z - tied).abs() <= ROUNDING);
+        is_so_high && self.allow_tilt(world_from_tool)
+    }
+
+    /// The same of its tilt alone, wherever it is: also of a grasp, `object_from_tool`, of an object that stands upright.
+    pub fn allow_tilt(&self, world_from_tool: &Isometry3<f64>) -> bool {
         let up = world_from_tool.rotation.inverse() * Vector3::z();
-        let is_tilted_so = self.up_in_tool.is_none_or(|tied| (up - tied.into_inner()).norm() <= ROUNDING);
-        is_tilted_so && self.height_m.is_none_or(|tied| (world_from_tool.translation.z - tied).abs() <= ROUNDING)
+        self.up_in_tool.is_none_or(|tied| (up - tied.into_inner()).norm() <= ROUNDING)
     }
 
     /// Can what is in the hand be lifted?

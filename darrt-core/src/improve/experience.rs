@@ -71,11 +71,9 @@ pub(super) struct WaysAround {
 
 impl WaysAround {
     /// Looked for on this leaf, and found or not.
-    pub(super) fn count(&mut self, leaf: Option<usize>, is_found: bool) {
+    pub(super) fn count(&mut self, leaf: usize, is_found: bool) {
         self.all.count(is_found);
-        if let Some(leaf) = leaf {
-            self.on_leaf.entry(leaf).or_default().count(is_found);
-        }
+        self.on_leaf.entry(leaf).or_default().count(is_found);
     }
 
     /// The chance of the next one on this leaf.

@@ -144,11 +144,12 @@ impl<D: Domain> Roadmap<'_, D> {
 
     /// Looks for ways around what is blocked.
     fn go_around(&mut self, a: Id, b: Id, rng: &mut dyn Rng) {
-        let Some(exit) = self.known.get(a).map(|known| known.exit.clone()) else { return };
+        let Some((exit, [_, leaf])) = self.known.get(a).map(|known| (known.exit.clone(), known.leaves())) else {
+            return;
+        };
         let Some(link) = self.link_of(a, b) else { return };
         let (steps, blocked) = (link.steps.clone().unwrap_or_default(), link.blocked.clone());
         let around = self.around(exit, steps, &blocked, rng);
-        let leaf = self.known.get(a).map(|known| known.leaves()[1]);
         self.ways_around.count(leaf, around.is_some());
         match around {
             Some((seconds, careless_s, steps)) => {

@@ -197,9 +197,12 @@ impl<'a, D: Domain> Roadmap<'a, D> {
         let id = self.known.len();
         let guess = |to: Id, from: &State<D>, (at, end): (&State<D>, &State<D>)| {
             let m = self.extender.problem.domain();
-            let seconds = self.any.ratio() * self.cost.between(m, from, at) + self.cost.arrival(m, from, at, end);
-            // To arrive the robot need not go where it did on another plan.
-            let seconds = if self.known.get(to).is_some_and(|next| next.is_arrival) { 0.0 } else { seconds };
+            let seconds = if self.known.get(to).is_some_and(|next| next.is_arrival) {
+                // To arrive the robot need not go where it did on another plan.
+                0.0
+            } else {
+                self.any.ratio() * self.cost.between(m, from, at) + self.cost.arrival(m, from, at, end)
+            };
             Link { to, seconds, careless_s: 0.0, verdict: Verdict::Open, steps: None, blocked: Vec::new() }
         };
         let behind = self.known.iter().enumerate().skip(1).filter(|(_, next)| next.begins_on == ends_on);

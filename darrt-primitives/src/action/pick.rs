@@ -16,7 +16,6 @@ use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::grasp::hold::Hold;
 use crate::grasp::rim::{rim_is_graspable, rim_overhangs};
 use crate::grasp::{Grasp, GraspFamily, GraspKind};
-use crate::hand_ties::HandTies;
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mode::{Contacts, Held, TouchReason};
 use crate::primitive;
@@ -125,12 +124,12 @@ impl Picking<'_> {
 /// A grasp of the family for a hand that may be tilted as it likes, or one of its grid for which the hand is tilted as it is, the
 /// object upright; `None` where there is none.
 pub fn drawn_grasp<M: Manipulator>(m: &Tabletop<M>, family: &dyn GraspFamily, rng: &mut dyn Rng) -> Option<Grasp> {
-    let ties = HandTies { height_m: None, ..m.manipulator().hand_ties() };
+    let ties = m.manipulator().hand_ties();
     if ties.up_in_tool.is_none() {
         return Some(family.sample(rng));
     }
     let mut fitting = family.grid();
-    fitting.retain(|grasp| ties.allow(&grasp.object_from_tool));
+    fitting.retain(|grasp| ties.allow_tilt(&grasp.object_from_tool));
     let index = rng.random_range(0..fitting.len().max(1));
     fitting.get(index).copied()
 }

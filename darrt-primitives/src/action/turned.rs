@@ -34,7 +34,7 @@ pub fn turned<M: Manipulator>(
 }
 
 /// `pose` turned by `angle` (rad) about the vertical through `centre`.
-pub(super) fn turned_about(pose: &Isometry3<f64>, centre: &Point2<f64>, angle: f64) -> Isometry3<f64> {
+pub fn turned_about(pose: &Isometry3<f64>, centre: &Point2<f64>, angle: f64) -> Isometry3<f64> {
     let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
     let middle = Vector3::new(centre.x, centre.y, 0.0);
     let at = middle + turn * (pose.translation.vector - middle);

@@ -58,10 +58,9 @@ pub fn why_none_holds(object: &Object, hand: &dyn Hand, payload_kg: f64) -> Opti
 /// Why no grasp of the object fits the tilt of a hand that is always tilted alike, the object upright; `None` if one does, or if there is
 /// none that can be judged.
 pub fn why_none_fits_tilt(object: &Object, hand: &dyn Hand, ties: &HandTies) -> Option<String> {
-    let ties = HandTies { height_m: None, ..*ties };
     ties.up_in_tool?;
     let families = families(object, hand).ok().filter(|families| !families.is_empty())?;
-    let fits = families.iter().flat_map(|family| family.grid()).any(|grasp| ties.allow(&grasp.object_from_tool));
+    let fits = families.iter().flat_map(|family| family.grid()).any(|grasp| ties.allow_tilt(&grasp.object_from_tool));
     let names: Vec<_> = object.grasps.iter().map(|family| format!("`{}`", name_of(*family))).collect();
     (!fits).then(|| format!("the hand is always tilted alike, and no grasp of it ({}) is tilted so", names.join(", ")))
 }

@@ -36,14 +36,17 @@ pub(in crate::laws) fn its_end<D: Domain>(m: &D, way: &Plan<D>) -> crate::goal::
     crate::goal::Region::<D>::new(Box::new(is_met), Box::new(|_, _| None))
 }
 
+/// By primitive: how many ways were refused, and why the last one was.
+type Refusals = BTreeMap<usize, (usize, PrimitiveId, String)>;
+
 /// What became of ways whose last step is an instance of a primitive.
 #[derive(Debug, Default)]
 pub(super) struct Ledger {
     asked: BTreeMap<usize, usize>,
     accepted: BTreeSet<usize>,
-    refused: BTreeMap<usize, (usize, PrimitiveId, String)>,
+    refused: Refusals,
     /// The same, at whichever step.
-    earlier: BTreeMap<usize, (usize, PrimitiveId, String)>,
+    earlier: Refusals,
 }
 
 impl Ledger {
@@ -69,7 +72,7 @@ impl Ledger {
             }
             // A verifier may know its goal by itself.
             Err(refusal) => {
-                let count = |of: &mut BTreeMap<usize, (usize, PrimitiveId, String)>| {
+                let count = |of: &mut Refusals| {
                     let known = of.get(&id.index()).map_or(0, |(count, ..)| *count);
                     of.insert(id.index(), (known + 1, id, refusal.to_string()));
                 };
@@ -84,16 +87,14 @@ impl Ledger {
     }
 
     fn verdict(&self) -> Result<(), Broken> {
-        for (primitive, (count, id, why)) in &self.refused {
-            let holds = self.accepted.contains(primitive) || *count < MANY;
-            let text = || format!("{count} ways refused at their last step, the last one because {why}");
-            ensure(ACCEPTS, holds, text, "one accepted").map_err(|broken| broken.of(id.name()))?;
-        }
-        // It may refuse what leads to such a step, always, as the touch before a push.
-        for (primitive, (count, id, why)) in &self.earlier {
-            let holds = self.accepted.contains(primitive) || *count < MANY_EARLIER;
-            let text = || format!("{count} ways that end so refused, the last one because {why}");
-            ensure(ACCEPTS, holds, text, "one accepted").map_err(|broken| broken.of(id.name()))?;
+        // It may refuse what leads to such a step, always, as the touch before a push: that takes more ways.
+        let last = (&self.refused, MANY, "ways refused at their last step");
+        for (refused, many, which) in [last, (&self.earlier, MANY_EARLIER, "ways that end so refused")] {
+            for (primitive, (count, id, why)) in refused {
+                let holds = self.accepted.contains(primitive) || *count < many;
+                let text = || format!("{count} {which}, the last one because {why}");
+                ensure(ACCEPTS, holds, text, "one accepted").map_err(|broken| broken.of(id.name()))?;
+            }
         }
         Ok(())
     }

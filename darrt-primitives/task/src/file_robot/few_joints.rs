@@ -9,13 +9,14 @@ use std::f64::consts::TAU;
 
 use darrt_core::random::{Purpose, stream};
 use darrt_core::space::so2::wrap;
+use darrt_primitives::action::turned::turned_about;
 use darrt_primitives::joints::Joints;
 use darrt_primitives::kinematics::urdf::{JointDescription, JointKind, LinkDescription};
 use darrt_primitives::kinematics::{
     ChainInverse, InverseOptions, JointLimit, KinematicTree, KinematicsError, RobotDescription,
 };
 use darrt_primitives::manipulator::{JointVector as _, world_from_base};
-use nalgebra::{Isometry3, Point2, Translation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point2, Translation3, Unit, Vector3};
 use rand::{Rng, RngExt};
 
 use super::chain::ArmChain;
@@ -87,8 +88,7 @@ impl FewJoints {
         rng: &mut dyn Rng,
     ) -> Option<Isometry3<f64>> {
         let centre = Point2::from(world_from_tool.translation.vector.xy());
-        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.turn(base, world_from_tool, &centre, rng)?);
-        Some(Isometry3::from_parts(world_from_tool.translation, turn * world_from_tool.rotation))
+        Some(turned_about(world_from_tool, &centre, self.turn(base, world_from_tool, &centre, rng)?))
     }
 
     /// See [`Manipulator::turn_to_reach`](darrt_primitives::manipulator::Manipulator::turn_to_reach).
@@ -114,7 +114,7 @@ impl FewJoints {
             let aligned = window.map(|seen| {
                 let tool = axis_from_base * seen.base_from_tool;
                 let turn = turn_onto(&tool, &wanted);
-                (seen, turn, apart_m(&turned(&tool, turn), &wanted))
+                (seen, turn, apart_m(&turned_about(&tool, &Point2::origin(), turn), &wanted))
             });
             let (seen, ahead, _) = aligned.min_by(|a, b| a.2.total_cmp(&b.2))?;
             let start: Vec<_> =
@@ -136,11 +136,6 @@ fn turn_onto(pose: &Isometry3<f64>, wanted: &Isometry3<f64>) -> f64 {
     let cross: f64 = pairs().map(|(from, to)| from.perp(&to)).sum();
     let dot: f64 = pairs().map(|(from, to)| from.dot(&to)).sum();
     cross.atan2(dot)
-}
-
-fn turned(pose: &Isometry3<f64>, angle: f64) -> Isometry3<f64> {
-    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
-    Isometry3::from_parts((turn * pose.translation.vector).into(), turn * pose.rotation)
 }
 
 fn apart_m(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
@@ -277,7 +272,7 @@ mod tests {
                 let centre = Point2::new(ahead.x, ahead.y);
                 let about = |angle: f64| {
                     let middle = Translation3::new(centre.x, centre.y, 0.0);
-                    middle * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle) * middle.inverse()
+                    middle * nalgebra::UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle) * middle.inverse()
                 };
                 let drawn = about(rng.random_range(-3.0..3.0)) * pose;
                 as_drawn += u32::from(robot.inverse(&base, &drawn, &mut rng).is_some());

@@ -6,7 +6,7 @@ use darrt_geom::{Body, Shape};
 use darrt_primitives::hand_ties::HandTies;
 use darrt_primitives::joints::Joints;
 use darrt_primitives::kinematics::{
-    JointLimit, KinematicTree, KinematicsError, MeshPlaces, RobotDescription, link_bodies,
+    JointLimit, KinematicTree, KinematicsError, MeshPlaces, RobotDescription, UrdfError, link_bodies,
 };
 use darrt_primitives::manipulator::{JointVector as _, LinkGroup, RobotLink};
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -93,11 +93,19 @@ impl Loaded {
         if let Some(known) = self.solids.get() {
             return Ok(known);
         }
-        let file = || self.source.name.clone();
-        let wrong = |source| RobotFileError::Description { file: file(), source };
-        let tree = KinematicTree::new(&self.amended.description).map_err(wrong)?;
-        let bodies = link_bodies(&self.amended.description, &tree, &self.meshes.paths()).map_err(wrong)?;
+        let tree = self.tree()?;
+        let bodies = link_bodies(&self.amended.description, &tree, &self.meshes.paths());
+        let bodies = bodies.map_err(|source| self.wrong(source))?;
         Ok(self.solids.get_or_init(|| (tree, bodies)))
+    }
+
+    fn tree(&self) -> Result<KinematicTree, RobotFileError> {
+        KinematicTree::new(&self.amended.description).map_err(|source| self.wrong(source))
+    }
+
+    /// Something is wrong with the description.
+    fn wrong(&self, source: UrdfError) -> RobotFileError {
+        RobotFileError::Description { file: self.source.name.clone(), source }
     }
 
     /// The tree's variables at rest, the hand open.
@@ -129,9 +137,9 @@ impl Loaded {
         self.built(kind, base, true)
     }
 
-    /// What the joints of the arm do not change of its hand.
+    /// What the joints of the arm do not change of its hand. Reads no meshes.
     pub(super) fn hand_ties(&self) -> Result<HandTies, RobotFileError> {
-        let (tree, _) = self.solids()?;
+        let tree = &self.tree()?;
         let chain = self.layout(tree).zip(tree.link_index(&self.amended.tool_link));
         let chain = chain.and_then(|((layout, _), tool)| layout.chain(tool));
         let no_layout = || self.source.located(Fault::new("arm", "does not fit the description"));
