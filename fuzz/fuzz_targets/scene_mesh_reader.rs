@@ -1,7 +1,7 @@
 //! Mesh files: refused, or a sound mesh that can be used as a shape.
 //!
-//! The first byte of an input says how it is read: `o` an OBJ file, `s` an STL file, `d` a COLLADA file, `g` a GLB file, anything
-//! else corners and triangles.
+//! The first byte of an input says how it is read: `o` an OBJ file, `s` an STL file, `d` a COLLADA file, `g` a GLB file, `j` the
+//! JSON of a GLB file of one triangle, anything else corners and triangles.
 #![no_main]
 
 use std::path::PathBuf;
@@ -17,7 +17,22 @@ const COLLADA: &[&str] = &[include_str!("../seeds/scene_mesh_reader/square_dae")
 /// The bytes, or a file with edits.
 fn edited(bytes: &[u8], files: &[&str]) -> Vec<u8> {
     // The seed begins with the byte that says how it is read.
-    text(bytes, files).trim_start_matches('d').as_bytes().to_vec()
+    text(bytes, files).trim_start_matches(['d', 'j']).as_bytes().to_vec()
+}
+
+/// The JSON of a GLB file.
+const GLTF: &[&str] = &[include_str!("../seeds/scene_mesh_reader/triangle_gltf")];
+
+/// A GLB file with this JSON and the numbers of one triangle, its lengths as they should be.
+fn with_header(json: &[u8]) -> Vec<u8> {
+    let numbers = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|x| x.to_le_bytes());
+    let numbers: Vec<u8> = numbers.chain([0, 0, 1, 0, 2, 0, 0, 0]).collect();
+    let word = |value: usize| (value as u32).to_le_bytes();
+    let padded = json.len().next_multiple_of(4);
+    let spaces = vec![b' '; padded - json.len()];
+    let length = word(28 + padded + numbers.len());
+    let json_chunk = [&word(padded)[..], b"JSON", json, &spaces].concat();
+    [&b"glTF"[..], &word(2), &length, &json_chunk, &word(numbers.len()), b"BIN\0", &numbers].concat()
 }
 
 /// Corners, triangles.
@@ -52,6 +67,7 @@ fuzz_target!(|data: &[u8]| {
         b's' => read("stl", bytes).ok(),
         b'd' => read("dae", &edited(bytes, COLLADA)).ok(),
         b'g' => read("glb", bytes).ok(),
+        b'j' => read("glb", &with_header(&edited(bytes, GLTF))).ok(),
         _ => assemble(bytes),
     };
     let Some(mesh) = mesh else { return };

@@ -5,8 +5,9 @@
 
 use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::Source;
+use gltf::json::validation::Checked;
 use gltf::mesh::Mode;
-use gltf::{Accessor, Gltf, Node, Primitive, Semantic};
+use gltf::{Accessor, Document, Glb, Node, Primitive, Semantic, json};
 use nalgebra::{Matrix4, Point3};
 
 /// Of the file's header and of that of its first chunk.
@@ -27,12 +28,13 @@ pub(super) fn glb(shown: &str, bytes: &[u8]) -> Result<Soup, GeomError> {
         return Err(reader.wrong("it does not begin with `glTF`"));
     }
     check_header(bytes).map_err(|why| reader.wrong(&why))?;
-    let file = Gltf::from_slice(bytes).map_err(|error| reader.wrong(&error.to_string()))?;
+    let file = Glb::from_slice(bytes).map_err(|error| reader.wrong(&error.to_string()))?;
+    reader.blob = file.bin.as_deref().unwrap_or_default();
+    let file = document(&file.json).map_err(|why| reader.wrong(&why))?;
     if let Some(extension) = file.extensions_required().next() {
         let extension: String = extension.chars().take(80).collect();
         return Err(reader.wrong(&format!("it needs the extension `{extension}`, which is not read")));
     }
-    reader.blob = file.blob.as_deref().unwrap_or_default();
     let scene = file.default_scene().or_else(|| file.scenes().next());
     let scene = scene.ok_or_else(|| reader.wrong("it has no scene"))?;
     let mut stack: Vec<(Node<'_>, Matrix4<f64>)> = scene.nodes().map(|node| (node, Matrix4::identity())).collect();
@@ -165,6 +167,18 @@ impl<'a> Reader<'a> {
     fn wrong(&self, reason: &str) -> GeomError {
         GeomError::Malformed { path: self.shown.to_owned(), format: "GLB", reason: reason.to_owned() }
     }
+}
+
+/// The JSON part, checked.
+fn document(bytes: &[u8]) -> Result<Document, String> {
+    let root: json::Root = json::deserialize::from_slice(bytes).map_err(|error| error.to_string())?;
+    // The checks of the crate `gltf` look up the accessors of positions before they check that these exist.
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let positions = primitives.filter_map(|primitive| primitive.attributes.get(&Checked::Valid(Semantic::Positions)));
+    if let Some(missing) = positions.map(|accessor| accessor.value()).find(|&index| index >= root.accessors.len()) {
+        return Err(format!("positions are in accessor {missing}, there are {}", root.accessors.len()));
+    }
+    Document::from_json(root).map_err(|error| error.to_string())
 }
 
 /// Do the lengths in the header agree with the file? The parser subtracts them without asking.

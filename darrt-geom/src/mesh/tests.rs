@@ -286,6 +286,8 @@ fn what_is_wrong_with_a_glb_is_told() {
         ("\"byteOffset\":36", "\"byteOffset\":10", "names a vertex that does not exist"),
         ("\"count\":3,\"type\":\"SCALAR\"", "\"count\":2,\"type\":\"SCALAR\"", "no multiple of 3"),
         ("\"mesh\":0", "\"mesh\":7", ""),
+        ("\"POSITION\":0", "\"POSITION\":2", "positions are in accessor 2, there are 2"),
+        ("\"indices\":1", "\"indices\":2", ""),
         ("\"mesh\":0", "\"mesh\":0,\"children\":[0]", "holds itself"),
         ("\"scene\":0", "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"scene\":0", ""),
         ("{\"byteLength\":44}", "{\"byteLength\":44,\"uri\":\"a.bin\"}", "outside of the file"),
