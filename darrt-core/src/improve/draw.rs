@@ -52,7 +52,7 @@ pub(super) enum Hope {
 impl<D: Domain> Roadmap<'_, D> {
     /// The draw that promises most, and, where the cost asks for one, stopovers besides; `false` if there is none.
     pub(super) fn draw(&mut self, hope: Hope, rng: &mut dyn Rng) -> bool {
-        let Some(chain) = self.cheapest(false) else { return false };
+        let Some(chain) = self.cheapest() else { return false };
         if hope == Hope::LessTime {
             let costly = self.costly_arrivals(&chain);
             for _ in 0..STOPOVERS {
@@ -84,8 +84,8 @@ impl<D: Domain> Roadmap<'_, D> {
         let mut seconds = 0.0;
         for (a, b) in chain.iter().zip(chain.iter().skip(1)) {
             let next = self.known.get(*b)?;
-            let (link, next_s) = (self.link_of(*a, *b)?, counts(next.seconds, next.careless_s));
-            seconds += counts(link.seconds, link.careless_s);
+            let (way, next_s) = (self.way_of(*a, *b)?, counts(next.seconds, next.careless_s));
+            seconds += counts(way.seconds, way.careless_s);
             onward_s.push(seconds);
             seconds += next_s;
             until_s.push(seconds);

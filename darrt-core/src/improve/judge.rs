@@ -5,7 +5,7 @@
 
 use rand::Rng;
 
-use super::roadmap::{Id, Roadmap, Verdict};
+use super::roadmap::{Id, Roadmap, Verdict, Way};
 use crate::budget::Stop;
 use crate::domain::Domain;
 use crate::lazy_validation::validate_step;
@@ -41,19 +41,18 @@ impl<D: Domain> Roadmap<'_, D> {
             if self.extender.interrupt.stop() == Some(Stop::Cancelled) {
                 return None;
             }
-            let chain = self.cheapest(false)?;
+            let chain = self.cheapest()?;
             let pairs = chain.iter().copied().zip(chain.iter().copied().skip(1));
             let is_open = |verdict: Verdict| verdict == Verdict::Open || (all && verdict == Verdict::Supposed);
-            let is_open_link = |(a, b): &(Id, Id)| self.link_of(*a, *b).is_some_and(|link| is_open(link.verdict));
+            let is_open_way = |(a, b): &(Id, Id)| self.way_of(*a, *b).is_some_and(|way| is_open(way.verdict));
             let is_open_vertex = |id: &&Id| self.known.get(**id).is_some_and(|known| known.verdict == Verdict::Open);
             // What needs no way around first: it may rule the chain out, and takes less time.
-            let open =
-                pairs.clone().find(|(a, b)| self.link_of(*a, *b).is_some_and(|link| link.verdict == Verdict::Open));
+            let open = pairs.clone().find(|(a, b)| self.way_of(*a, *b).is_some_and(|way| way.verdict == Verdict::Open));
             if let Some((a, b)) = open {
-                self.judge_link(a, b, rng);
+                self.judge_way(a, b, rng);
             } else if let Some(id) = chain.iter().find(is_open_vertex).filter(|_| all) {
                 self.judge_manipulation(*id);
-            } else if let Some((a, b)) = pairs.clone().find(is_open_link) {
+            } else if let Some((a, b)) = pairs.clone().find(is_open_way) {
                 self.go_around(a, b, rng);
             } else {
                 return Some(chain);
@@ -98,20 +97,21 @@ impl<D: Domain> Roadmap<'_, D> {
             .is_some_and(|local_repair| local_repair.is_free_to_turn(self.extender.problem.domain(), &step.instance))
     }
 
-    /// Finds the way of a link that is guessed, and judges one that is known.
-    fn judge_link(&mut self, a: Id, b: Id, rng: &mut dyn Rng) {
+    /// Finds a way that is guessed, and judges one that is known.
+    fn judge_way(&mut self, a: Id, b: Id, rng: &mut dyn Rng) {
         let Some(exit) = self.known.get(a).map(|known| known.exit.clone()) else { return };
-        let Some(link) = self.link_of(a, b) else { return };
-        let Some(steps) = link.steps.clone() else {
-            match self.way(a, b, rng) {
-                Some(steps) => self.link(a, b, steps),
-                None => self.rule(a, b, Verdict::Blocked),
-            }
-            return;
+        let Some(way) = self.way_of(a, b) else { return };
+        let way = match way.steps.clone() {
+            Some(steps) => self.judged(a, b, exit, steps),
+            None => self.way(a, b, rng).map(|steps| self.way_by(a, b, steps)),
         };
+        self.know(a, b, way);
+    }
+
+    /// The way by `steps`, judged; `None` if it is blocked where it may not turn aside.
+    fn judged(&mut self, a: Id, b: Id, mut here: State<D>, steps: Vec<Step<D>>) -> Option<Way<D>> {
         let (m, validity) = (self.m(), self.extender.problem.validity());
-        let mut here = exit;
-        let (mut expected_s, mut verdict) = (self.arrival_s(a, b), Verdict::Free);
+        let (mut seconds, mut verdict) = (self.arrival_s(a, b), Verdict::Free);
         let mut blocked = Vec::with_capacity(steps.len());
         for step in &steps {
             let turns = self.may_turn(step);
@@ -121,25 +121,17 @@ impl<D: Domain> Roadmap<'_, D> {
             let is_blocked = free.blame.is_some() && free.fraction < step.until;
             blocked.push(is_blocked);
             if !is_blocked {
-                expected_s += straight_s;
+                seconds += straight_s;
                 self.any.learn(straight_s, straight_s);
             } else if turns {
-                expected_s += straight_s * self.around.ratio();
+                seconds += straight_s * self.around.ratio();
                 verdict = Verdict::Supposed;
             } else {
-                return self.rule(a, b, Verdict::Blocked);
+                return None;
             }
             step.instance.motion.at_into(m, step.until, &mut here);
         }
-        if let Some(link) = self.link_mut(a, b) {
-            (link.seconds, link.blocked, link.verdict) = (expected_s, blocked, verdict);
-        }
-    }
-
-    fn rule(&mut self, a: Id, b: Id, verdict: Verdict) {
-        if let Some(link) = self.link_mut(a, b) {
-            link.verdict = verdict;
-        }
+        Some(Way { seconds, careless_s: 0.0, verdict, steps: Some(steps), blocked })
     }
 
     /// Looks for ways around what is blocked.
@@ -147,20 +139,19 @@ impl<D: Domain> Roadmap<'_, D> {
         let Some((exit, [_, leaf])) = self.known.get(a).map(|known| (known.exit.clone(), known.leaves())) else {
             return;
         };
-        let Some(link) = self.link_of(a, b) else { return };
-        let (steps, blocked) = (link.steps.clone().unwrap_or_default(), link.blocked.clone());
+        let Some(way) = self.way_of(a, b) else { return };
+        let (steps, blocked) = (way.steps.clone().unwrap_or_default(), way.blocked.clone());
         let around = self.around(exit, steps, &blocked, rng);
         self.ways_around.count(leaf, around.is_some());
-        match around {
-            Some((seconds, careless_s, steps)) => {
-                let seconds = seconds + self.arrival_s(a, b);
-                if let Some(link) = self.link_mut(a, b) {
-                    (link.seconds, link.careless_s) = (seconds + careless_s, careless_s);
-                    (link.steps, link.verdict) = (Some(steps), Verdict::Free);
-                }
-            }
-            None => self.rule(a, b, Verdict::Blocked),
-        }
+        let arrival_s = self.arrival_s(a, b);
+        let way = around.map(|(takes_s, careless_s, steps)| Way {
+            seconds: takes_s + arrival_s + careless_s,
+            careless_s,
+            verdict: Verdict::Free,
+            steps: Some(steps),
+            blocked: Vec::new(),
+        });
+        self.know(a, b, way);
     }
 
     /// The steps with ways around what is blocked, their seconds, and what the care costs that they give up.

@@ -54,9 +54,17 @@ pub(super) struct Manipulation<D: Domain> {
     ends_on: usize,
 }
 
-/// The way from the exit of one manipulation to the entry of another.
-pub(super) struct Link<D: Domain> {
-    pub(super) to: Id,
+/// From the exit of one manipulation to the entry of another.
+struct Link<D: Domain> {
+    to: Id,
+    way: Way<D>,
+    /// That which counts more, where there are two: the way that a plan takes may lead to and fro, and a straight one that is
+    /// only guessed may be blocked.
+    other: Option<Box<Way<D>>>,
+}
+
+/// A way from the exit of one manipulation to the entry of another.
+pub(super) struct Way<D: Domain> {
     pub(super) seconds: f64,
     /// Those of them that stand for care that is given up.
     pub(super) careless_s: f64,
@@ -117,6 +125,22 @@ impl<D: Domain> Manipulation<D> {
     }
 }
 
+impl<D: Domain> Way<D> {
+    /// Nothing is known of it but perhaps its steps.
+    fn open(seconds: f64, steps: Option<Vec<Step<D>>>) -> Self {
+        Self { seconds, careless_s: 0.0, verdict: Verdict::Open, steps, blocked: Vec::new() }
+    }
+
+    /// The seconds that it counts as, if ways around are found with this chance.
+    fn counted_s(&self, chance: f64) -> f64 {
+        match self.verdict {
+            Verdict::Blocked => f64::INFINITY,
+            Verdict::Supposed => self.seconds / chance,
+            Verdict::Open | Verdict::Free => self.seconds,
+        }
+    }
+}
+
 impl<'a, D: Domain> Roadmap<'a, D> {
     /// Only the start.
     pub(super) fn new(extender: Extender<'a, D>, cost: &'a dyn ExecutionCost<D>, start: &State<D>) -> Self {
@@ -124,10 +148,7 @@ impl<'a, D: Domain> Roadmap<'a, D> {
         let (known, leaves, tries) = (Vec::new(), Vec::new(), BTreeMap::new());
         let ways_around = WaysAround::default();
         let mut roadmap = Self { extender, cost, known, leaves, tries, around, any, ways_around };
-        let id = roadmap.add(start.clone(), Vec::new(), start.clone());
-        if let Some(begin) = roadmap.known.get_mut(id) {
-            begin.verdict = Verdict::Free;
-        }
+        roadmap.add(start.clone(), Vec::new(), start.clone(), false);
         roadmap
     }
 
@@ -152,20 +173,17 @@ impl<'a, D: Domain> Roadmap<'a, D> {
             let (Some(entry), Some(exit)) = (states.get(piece.entry), states.get(piece.until)) else { break };
             let part = |from, to| steps.get(from..to).unwrap_or_default().to_vec();
             let lead = part(piece.from, piece.entry);
-            let id = self.add(entry.clone(), part(piece.entry, piece.until), exit.clone());
+            let id = self.add(entry.clone(), part(piece.entry, piece.until), exit.clone(), false);
             if let Some(at) = at {
-                self.link(at, id, lead);
+                self.lead(at, id, lead);
             }
             (at, begun) = (Some(id), piece.until);
         }
         if let Some(end) = goal.and_then(|_| states.last()) {
             let lead = steps.get(begun..).unwrap_or_default().to_vec();
-            let id = self.add(end.clone(), Vec::new(), end.clone());
-            if let Some(arrival) = self.known.get_mut(id) {
-                (arrival.is_arrival, arrival.verdict) = (true, Verdict::Free);
-            }
+            let id = self.add(end.clone(), Vec::new(), end.clone(), true);
             if let Some(at) = at {
-                self.link(at, id, lead);
+                self.lead(at, id, lead);
             }
         }
     }
@@ -192,30 +210,30 @@ impl<'a, D: Domain> Roadmap<'a, D> {
     }
 
     /// A new vertex, with guessed links from and to those on its leaves.
-    fn add(&mut self, entry: State<D>, steps: Vec<Step<D>>, exit: State<D>) -> Id {
+    fn add(&mut self, entry: State<D>, steps: Vec<Step<D>>, exit: State<D>, is_arrival: bool) -> Id {
         let (begins_on, ends_on) = (self.leaf_of(&entry), self.leaf_of(&exit));
         let id = self.known.len();
-        let guess = |to: Id, from: &State<D>, (at, end): (&State<D>, &State<D>)| {
+        let guess = |to: Id, is_arrival: bool, from: &State<D>, (at, end): (&State<D>, &State<D>)| {
             let m = self.extender.problem.domain();
-            let seconds = if self.known.get(to).is_some_and(|next| next.is_arrival) {
+            let seconds = if is_arrival {
                 // To arrive the robot need not go where it did on another plan.
                 0.0
             } else {
                 self.any.ratio() * self.cost.between(m, from, at) + self.cost.arrival(m, from, at, end)
             };
-            Link { to, seconds, careless_s: 0.0, verdict: Verdict::Open, steps: None, blocked: Vec::new() }
+            Link { to, way: Way::open(seconds, None), other: None }
         };
         let behind = self.known.iter().enumerate().skip(1).filter(|(_, next)| next.begins_on == ends_on);
-        let links = behind.map(|(to, next)| guess(to, &exit, (&next.entry, &next.exit))).collect();
+        let links = behind.map(|(to, next)| guess(to, next.is_arrival, &exit, (&next.entry, &next.exit))).collect();
         let before = self.known.iter().enumerate().filter(|(_, last)| last.ends_on == begins_on && !last.is_arrival);
-        let to_it: Vec<_> = before.map(|(at, last)| (at, guess(id, &last.exit, (&entry, &exit)))).collect();
+        let to_it: Vec<_> = before.map(|(at, last)| (at, guess(id, false, &last.exit, (&entry, &exit)))).collect();
         for (at, link) in to_it {
             if let Some(last) = self.known.get_mut(at) {
                 last.links.push(link);
             }
         }
         let seconds = self.seconds(&entry, &steps);
-        let (careless_s, verdict, is_arrival) = (0.0, Verdict::Open, false);
+        let (careless_s, verdict) = (0.0, if steps.is_empty() { Verdict::Free } else { Verdict::Open });
         self.known.push(Manipulation {
             entry,
             steps,
@@ -231,12 +249,41 @@ impl<'a, D: Domain> Roadmap<'a, D> {
         id
     }
 
-    /// The link from `a` to `b` goes by `steps`.
-    pub(super) fn link(&mut self, a: Id, b: Id, steps: Vec<Step<D>>) {
-        let Some(exit) = self.known.get(a).map(|a| &a.exit) else { return };
-        let seconds = self.seconds(exit, &steps) + self.arrival_s(a, b);
+    /// The way from `a` to `b` by `steps`, of which nothing is known.
+    pub(super) fn way_by(&self, a: Id, b: Id, steps: Vec<Step<D>>) -> Way<D> {
+        let seconds = self.known.get(a).map_or(0.0, |a| self.seconds(&a.exit, &steps));
+        Way::open(seconds + self.arrival_s(a, b), Some(steps))
+    }
+
+    /// A chain goes from `a` to `b` by `steps`: that way, or, if it seems that there is a quicker one, first that.
+    fn lead(&mut self, a: Id, b: Id, steps: Vec<Step<D>>) {
+        let way = self.way_by(a, b, steps);
         if let Some(link) = self.link_mut(a, b) {
-            (link.seconds, link.steps) = (seconds, Some(steps));
+            if way.seconds <= link.way.seconds {
+                link.way = way;
+            } else {
+                link.other = Some(Box::new(way));
+            }
+        }
+    }
+
+    /// More is known of the way that is taken from `a` to `b`; `None`: it is blocked.
+    pub(super) fn know(&mut self, a: Id, b: Id, way: Option<Way<D>>) {
+        if let Some(link) = self.link_mut(a, b) {
+            match way {
+                Some(way) => link.way = way,
+                None => link.way.verdict = Verdict::Blocked,
+            }
+        }
+        self.settle(a, b);
+    }
+
+    /// Of two ways from `a` to `b` that is taken which counts less.
+    fn settle(&mut self, a: Id, b: Id) {
+        let Some(chance) = self.known.get(a).map(|a| self.ways_around.chance(a.ends_on)) else { return };
+        let Some(link) = self.link_mut(a, b) else { return };
+        if let Some(other) = link.other.as_mut().filter(|other| other.counted_s(chance) < link.way.counted_s(chance)) {
+            std::mem::swap(&mut link.way, other);
         }
     }
 
@@ -246,19 +293,20 @@ impl<'a, D: Domain> Roadmap<'a, D> {
         self.cost.arrival(self.m(), &a.exit, &b.entry, &b.exit)
     }
 
-    pub(super) fn link_of(&self, a: Id, b: Id) -> Option<&Link<D>> {
-        self.known.get(a)?.links.iter().find(|link| link.to == b)
+    /// The way that is taken to cost least.
+    pub(super) fn way_of(&self, a: Id, b: Id) -> Option<&Way<D>> {
+        self.known.get(a)?.links.iter().find(|link| link.to == b).map(|link| &link.way)
     }
 
-    pub(super) fn link_mut(&mut self, a: Id, b: Id) -> Option<&mut Link<D>> {
+    fn link_mut(&mut self, a: Id, b: Id) -> Option<&mut Link<D>> {
         self.known.get_mut(a)?.links.iter_mut().find(|link| link.to == b)
     }
 
-    /// By vertex: the seconds until its exit on the cheapest chain from the start over what is not blocked, or `certain`: over
-    /// what is free; and the vertex before it. Infinite where there is none. What is only supposed counts the more, the less
+    /// By vertex: the seconds until its exit on the cheapest chain from the start over what is not blocked, and the vertex
+    /// before it. Infinite where there is none. What is only supposed counts the more, the less
     /// often ways around were found: else one after the other is looked for, in vain, while a plan that is free waits.
-    pub(super) fn costs(&self, certain: bool) -> Vec<(f64, Id)> {
-        let may = |verdict: Verdict| verdict == Verdict::Free || (!certain && verdict != Verdict::Blocked);
+    fn costs(&self) -> Vec<(f64, Id)> {
+        let may = |verdict: Verdict| verdict != Verdict::Blocked;
         let mut best = vec![(f64::INFINITY, START); self.known.len()];
         if let Some(start) = best.first_mut() {
             start.0 = 0.0;
@@ -270,10 +318,9 @@ impl<'a, D: Domain> Roadmap<'a, D> {
             }
             let Some(here) = self.known.get(id) else { continue };
             let here_chance = self.ways_around.chance(here.ends_on);
-            for link in here.links.iter().filter(|link| may(link.verdict)) {
+            for link in here.links.iter().filter(|link| may(link.way.verdict)) {
                 let Some(next) = self.known.get(link.to).filter(|next| may(next.verdict)) else { continue };
-                let chance = if link.verdict == Verdict::Supposed { here_chance } else { 1.0 };
-                let through = seconds + link.seconds / chance + next.seconds;
+                let through = seconds + link.way.counted_s(here_chance) + next.seconds;
                 if let Some(slot) = best.get_mut(link.to)
                     && through < slot.0
                 {
@@ -286,7 +333,7 @@ impl<'a, D: Domain> Roadmap<'a, D> {
     }
 
     /// The arrival with the cheapest chain.
-    pub(super) fn best_arrival(&self, costs: &[(f64, Id)]) -> Option<Id> {
+    fn best_arrival(&self, costs: &[(f64, Id)]) -> Option<Id> {
         let arrivals = self.known.iter().enumerate().filter(|(_, known)| known.is_arrival);
         let timed =
             arrivals.filter_map(|(id, _)| Some((id, costs.get(id)?.0))).filter(|(_, seconds)| seconds.is_finite());
@@ -294,8 +341,8 @@ impl<'a, D: Domain> Roadmap<'a, D> {
     }
 
     /// The cheapest chain from the start to an arrival; see [`Roadmap::costs`].
-    pub(super) fn cheapest(&self, certain: bool) -> Option<Vec<Id>> {
-        let costs = self.costs(certain);
+    pub(super) fn cheapest(&self) -> Option<Vec<Id>> {
+        let costs = self.costs();
         chain_to(&costs, self.best_arrival(&costs)?)
     }
 
@@ -303,7 +350,7 @@ impl<'a, D: Domain> Roadmap<'a, D> {
     pub(super) fn careless_s(&self, chain: &[Id]) -> f64 {
         let pairs = chain.iter().zip(chain.iter().skip(1));
         let of = |(a, b): (&Id, &Id)| {
-            let link_s = self.link_of(*a, *b).map_or(0.0, |link| link.careless_s);
+            let link_s = self.way_of(*a, *b).map_or(0.0, |way| way.careless_s);
             link_s + self.known.get(*b).map_or(0.0, |known| known.careless_s)
         };
         pairs.map(of).sum()
@@ -313,7 +360,7 @@ impl<'a, D: Domain> Roadmap<'a, D> {
     pub(super) fn steps(&self, chain: &[Id]) -> Option<Vec<Step<D>>> {
         let mut steps = Vec::new();
         for (a, b) in chain.iter().zip(chain.iter().skip(1)) {
-            steps.extend(self.link_of(*a, *b)?.steps.as_ref()?.iter().cloned());
+            steps.extend(self.way_of(*a, *b)?.steps.as_ref()?.iter().cloned());
             steps.extend(self.known.get(*b)?.steps.iter().cloned());
         }
         Some(steps)
