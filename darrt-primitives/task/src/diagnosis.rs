@@ -131,6 +131,9 @@ impl Diagnosis {
             PlanningError::InfeasibleGoal { object, why } => {
                 Cause::InfeasibleGoal { object: object.clone(), lack: why.clone() }
             }
+            PlanningError::InfeasibleRule { index, why } => {
+                Cause::InfeasibleRule { rule: *index as u64, lack: why.clone() }
+            }
             PlanningError::MissingPrimitive { primitive, needs } => {
                 Cause::MissingPrimitive { primitive: primitive.clone(), needs: needs.clone() }
             }

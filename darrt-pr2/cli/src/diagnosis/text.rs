@@ -52,6 +52,7 @@ pub(crate) fn of_cause(cause: &Cause) -> Vec<String> {
             vec![format!("the goal of the robot: 0 of {tried} places free{}", in_the_way(blockers))]
         }
         Cause::Doubted { what } => vec![format!("doubted before the search, and not refuted: {what}")],
+        Cause::InfeasibleRule { rule, lack } => vec![format!("`steer[{rule}]` requires what no step can do: {lack}")],
         Cause::Steered { steps } => vec![format!("`steer` forbids what was tried: {}", plain_names(steps))],
         Cause::Refused { reason } => vec![format!("a plan was found, but the verifier refused it: {reason}")],
     }

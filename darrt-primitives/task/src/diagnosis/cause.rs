@@ -270,6 +270,13 @@ pub enum Cause {
         /// In words.
         what: String,
     },
+    /// No step can do what a rule of the problem requires.
+    InfeasibleRule {
+        /// Which rule of `steer`, from 0.
+        rule: u64,
+        /// What is missing, by object.
+        lack: String,
+    },
     /// Rules of the problem kept steps from being taken; that is no reason by itself.
     Steered {
         /// Which steps, most first.
@@ -333,6 +340,7 @@ impl Cause {
             Self::NoHand { hands } => Some(&hands.object),
             Self::NoPush { pushes, .. } => Some(&pushes.object),
             Self::MissingPrimitive { .. }
+            | Self::InfeasibleRule { .. }
             | Self::NoRobotGoal { .. }
             | Self::Doubted { .. }
             | Self::Steered { .. }

@@ -69,7 +69,10 @@ impl Old<'_> {
             for (name, value) in &mut facts.start {
                 *value = *start.joints.get(name.as_str())?;
             }
-            let tail = PlanFile { problem: self.rest(join)?, start, steps, ..self.file.clone() };
+            let mut problem = self.rest(join)?;
+            // What is required may come before.
+            problem.steers.retain(|rule| !rule.require);
+            let tail = PlanFile { problem, start, steps, ..self.file.clone() };
             match verify_unless(&tail, &facts, &VerifyOptions::default(), self.cancel) {
                 Ok(_) => return Some(join),
                 // At the goal, or at one of its steps.
@@ -110,6 +113,7 @@ impl Old<'_> {
             tolerance_rad: EXACTLY,
         };
         problem.goal = Goal { objects, robot: Some(robot) };
+        self.without_rules_met(&mut problem, |step| step < kept || step >= join)?;
         problem.validate(&problem.name).ok()?;
         Some(problem)
     }
