@@ -343,7 +343,7 @@ fn region_smaller_than_the_object() {
         "[[goal.object]]\nobject = \"mug\"\non = \"table\"\nregion = { min = [-0.22, -0.31], max = [-0.18, -0.29] }\n"
             .to_owned();
     // A region can have room where nobody looked: that is no proof. But every hand tried there meets one of the two.
-    let (hands, diagnosis) = case.hands(Place::Goal, Stage::Hand);
+    let (hands, diagnosis) = case.hands(Place::Goal, Stage::Room);
     assert!(!names(&hands).is_empty() && names(&hands).iter().all(|name| name.starts_with("book")), "{hands:?}");
     assert!(!diagnosis.remedies.is_empty(), "{diagnosis:#?}");
 }
@@ -440,6 +440,25 @@ fn what_was_done_before_the_end_is_a_plan_that_can_be_judged() {
 }
 
 #[test]
+fn an_object_that_has_no_room_itself_and_a_tool_out_of_reach_are_said_so() {
+    let mut case = Case::default();
+    case.world += &block("crate", [0.3, 0.3, 0.2], [-0.2, -0.3, 0.84]);
+    case.goals =
+        "[[goal.object]]\nobject = \"mug\"\non = \"table\"\nregion = { min = [-0.28, -0.38], max = [-0.12, -0.22] }\n"
+            .to_owned();
+    let (hands, _) = case.hands(Place::Goal, Stage::Room);
+    assert_eq!(hands.blockers[0].body, "crate");
+
+    let mut case = Case { iterations: 20, ..Case::default() };
+    case.goals = "[goal.robot]\ntool = { position = [0.0, 0.0, 2.4], rpy = [0.0, 0.0, 0.0] }\n".to_owned();
+    let (beyond_m, _) = case.cause(|cause| match cause {
+        Cause::NoRobotGoal { tried: 0, beyond_m, .. } => *beyond_m,
+        _ => None,
+    });
+    assert!((0.3..1.5).contains(&beyond_m), "{beyond_m}");
+}
+
+#[test]
 fn explained_changes_are_solved_and_as_few_as_can_be() {
     let mut case = Case::default();
     case.world += &cage([-0.2, 0.2]);
@@ -483,17 +502,16 @@ fn steer(rule: &str) -> String {
 
 #[test]
 fn what_is_required_is_done_on_the_way() {
-    let mut case = Case { iterations: 3000, ..Case::default() };
-    let usual = solved(&case);
+    // Carried, because nothing else is allowed; then it shall be pushed as well, from a part of the floor.
+    let carried = Case { primitives: ALL.replace(",\"Push\"", ""), iterations: 3000, ..Case::default() };
+    let usual = solved(&carried);
+    let mut case = Case { primitives: ALL.to_owned(), ..carried };
     let goals = case.goals.clone();
-    let has = |file: &PlanFile, name: &PrimitiveName| file.steps.iter().any(|step| step.primitive == *name);
-    // Carried by one seed or pushed by another: the other one of the two is required, from a part of the floor.
-    let other = if has(&usual, &PrimitiveName::PUSH) { "Pick" } else { "Push" };
-    let rule = format!("require = true\nobject = \"mug\"\nprimitive = \"{other}\"\nsurface = \"table\"\n");
-    case.goals = goals.clone() + &steer(&(rule + "base = { min = [-5, -5], max = [5, 0.2] }"));
+    let rule = "require = true\nobject = \"mug\"\nprimitive = \"Push\"\nsurface = \"table\"\n";
+    case.goals = goals.clone() + &steer(&(rule.to_owned() + "base = { min = [-5, -5], max = [5, 0.2] }"));
     let file = solved(&case);
-    let fits = |step: &&Step| step.primitive.as_str() == other && step.waypoints[0].base[1] <= 0.2;
-    assert!(file.steps.iter().any(|step| fits(&step)), "{other}");
+    let fits = |step: &&Step| step.primitive == PrimitiveName::PUSH && step.waypoints[0].base[1] <= 0.2;
+    assert!(file.steps.iter().any(|step| fits(&step)));
     // The verifier counts by itself: the usual plan lacks it, and what is required may not be forbidden elsewhere.
     let lacking = PlanFile { problem: file.problem.clone(), ..usual };
     let refusal = verify_for::<Pr2>(&lacking, &VerifyOptions::default()).unwrap_err();

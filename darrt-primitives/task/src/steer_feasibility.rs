@@ -38,13 +38,12 @@ pub(crate) fn check_rules(
             problem.objects.iter().filter(|object| rule.object.as_ref().is_none_or(|name| *name == object.name));
         let mut lacks = Vec::new();
         for object in objects {
-            match lack(rule, &Feasibility::new(problem, object, allowed, robot), allowed, problem) {
-                Some(lack) => lacks.push(format!("`{}`: {lack}", object.name)),
-                None => {
-                    lacks.clear();
-                    break;
-                }
-            }
+            let means = Feasibility::new(problem, object, allowed, robot);
+            let Some(lack) = lack(rule, &means, allowed, problem) else {
+                lacks.clear();
+                break;
+            };
+            lacks.push(format!("`{}`: {lack}", object.name));
         }
         if !lacks.is_empty() {
             return Err(PlanningError::InfeasibleRule { index, why: lacks.join("; ") });

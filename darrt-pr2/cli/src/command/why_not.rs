@@ -214,6 +214,7 @@ fn of_fault(fault: &Fault) -> String {
                 Stage::Overhang => format!("the rim of {object} overhangs no edge, so it cannot be taken by it"),
                 Stage::Hold => format!("no grasp of {object} holds it"),
                 Stage::Support => format!("{object} does not stand on what it may stand on"),
+                Stage::Room => format!("{object} itself has no room there{way}"),
                 Stage::Hand => format!("the hand has no room at {object}{way}"),
                 Stage::Approach => format!("there is no room for the straight way to {object}{way}"),
                 Stage::Reach => format!("the arm reaches {object} so from none of {bases} tried"),

@@ -63,3 +63,57 @@ impl Region {
         beside.norm() - solid.radius > self.reach_m + FAR_M
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Isometry3, Vector3};
+
+    use super::*;
+    use crate::planning::PlanRequest;
+    use crate::problem_file::{Obstacle, ShapeSpec};
+    use crate::testing::{builtin, facts, planned};
+    use crate::verify::verify;
+
+    fn block(name: String, at: [f64; 3]) -> Obstacle {
+        Obstacle {
+            name,
+            shape: ShapeSpec::Box { size: [0.2, 0.2, 0.2] },
+            at: at.to_vec(),
+            standing_on: None,
+            yaw: None,
+            rpy: None,
+            quaternion: None,
+        }
+    }
+
+    #[test]
+    fn what_is_far_costs_no_look_and_what_is_near_is_seen() {
+        let plan = planned(&PlanRequest::new(builtin("bowl").unwrap(), 0)).plan.unwrap();
+        let facts = facts(&plan.problem);
+        let usual = verify(&plan, &facts).unwrap();
+        let mut crowded = plan.clone();
+        let ring = (0..300).map(|i| (f64::from(i), (f64::from(i) * 0.1).sin_cos()));
+        let far = ring.map(|(i, (sin, cos))| block(format!("far {i}"), [(8.0 + i) * cos, (8.0 + i) * sin, 1.0]));
+        crowded.problem.obstacles.extend(far);
+        assert_eq!(verify(&crowded, &facts).unwrap(), usual);
+        // Wherever the bowl or the base comes, nothing that is there counts as far.
+        let (robot, world) = (Robot::new(&facts).unwrap(), World::new(&crowded.problem).unwrap());
+        let region = Region::of(&crowded, &robot, &world);
+        let (far, _) = world.fixed.iter().partition::<Vec<_>, _>(|(solid, pose)| region.is_far(solid, pose));
+        assert_eq!(far.len(), 300);
+        let (solid, _) = world.fixed.last().unwrap();
+        for waypoint in plan.steps.iter().flat_map(|step| &step.waypoints) {
+            let [x, y, _] = waypoint.base;
+            for direction in 0..8 {
+                let (sin, cos) = (f64::from(direction) * std::f64::consts::FRAC_PI_4).sin_cos();
+                let beside = Isometry3::from_parts(
+                    Vector3::new(x + 1.5 * cos, y + 1.5 * sin, 1.0).into(),
+                    Isometry3::identity().rotation,
+                );
+                assert!(!region.is_far(solid, &beside));
+            }
+            let [x, y, z] = waypoint.objects["bowl"].position;
+            assert!(!region.is_far(solid, &Isometry3::translation(x, y, z)));
+        }
+    }
+}

@@ -97,7 +97,12 @@ fn like(rule: &Steer) -> String {
         rule.base.as_ref().map(|base| format!("with the base in {}", region(base))),
         rule.not_base.as_ref().map(|base| format!("with the base not in {}", region(base))),
     ];
-    parts.into_iter().flatten().map(|part| format!(" {part}")).collect()
+    let mut words = String::new();
+    for part in parts.into_iter().flatten() {
+        words.push(' ');
+        words.push_str(&part);
+    }
+    words
 }
 
 /// What of a rule's keys does not hold. What rounding may do counts for the plan: towards what is wanted, and away from what is
