@@ -94,12 +94,15 @@ fn walls([x, y]: [f64; 2], far: f64) -> String {
 
 impl Case {
     fn problem(&self) -> ProblemFile {
+        ProblemFile::from_toml(&self.text(), "case").unwrap()
+    }
+
+    fn text(&self) -> String {
         let Self { primitives, robot, world, objects, goals, .. } = self;
-        let text = format!(
+        format!(
             "format = \"darrt-problem\"\nversion = 1\nname = \"case\"\nprimitives = {primitives}\n[robot]\nbase = [-1.0, \
              0.0, 0.0]\n{robot}\n{world}\n{objects}\n{goals}\n"
-        );
-        ProblemFile::from_toml(&text, "case").unwrap()
+        )
     }
 
     /// Plans, and finds out why there is no plan.
@@ -340,7 +343,7 @@ fn region_smaller_than_the_object() {
         "[[goal.object]]\nobject = \"mug\"\non = \"table\"\nregion = { min = [-0.22, -0.31], max = [-0.18, -0.29] }\n"
             .to_owned();
     // A region can have room where nobody looked: that is no proof. But every hand tried there meets one of the two.
-    let (hands, diagnosis) = case.hands(Place::Goal, Stage::Hand);
+    let (hands, diagnosis) = case.hands(Place::Goal, Stage::Room);
     assert!(!names(&hands).is_empty() && names(&hands).iter().all(|name| name.starts_with("book")), "{hands:?}");
     assert!(!diagnosis.remedies.is_empty(), "{diagnosis:#?}");
 }
@@ -437,6 +440,25 @@ fn what_was_done_before_the_end_is_a_plan_that_can_be_judged() {
 }
 
 #[test]
+fn an_object_that_has_no_room_itself_and_a_tool_out_of_reach_are_said_so() {
+    let mut case = Case::default();
+    case.world += &block("crate", [0.3, 0.3, 0.2], [-0.2, -0.3, 0.84]);
+    case.goals =
+        "[[goal.object]]\nobject = \"mug\"\non = \"table\"\nregion = { min = [-0.28, -0.38], max = [-0.12, -0.22] }\n"
+            .to_owned();
+    let (hands, _) = case.hands(Place::Goal, Stage::Room);
+    assert_eq!(hands.blockers[0].body, "crate");
+
+    let mut case = Case { iterations: 20, ..Case::default() };
+    case.goals = "[goal.robot]\ntool = { position = [0.0, 0.0, 2.4], rpy = [0.0, 0.0, 0.0] }\n".to_owned();
+    let (beyond_m, _) = case.cause(|cause| match cause {
+        Cause::NoRobotGoal { tried: 0, beyond_m, .. } => *beyond_m,
+        _ => None,
+    });
+    assert!((0.3..1.5).contains(&beyond_m), "{beyond_m}");
+}
+
+#[test]
 fn explained_changes_are_solved_and_as_few_as_can_be() {
     let mut case = Case::default();
     case.world += &cage([-0.2, 0.2]);
@@ -465,17 +487,67 @@ fn sides(file: &PlanFile) -> Vec<f64> {
     file.steps.iter().filter(|step| step.primitive == PrimitiveName::PICK).filter_map(side).collect()
 }
 
+/// The plan of the first seed that has one.
+fn solved(case: &Case) -> PlanFile {
+    let found = (0..6).find_map(|seed| {
+        let request = PlanRequest { iterations: Some(case.iterations), ..PlanRequest::new(case.problem(), seed) };
+        plan(&Registry::<Pr2>::new(), &request, &Cancel::new(), &mut Silent).unwrap().plan
+    });
+    found.unwrap()
+}
+
+fn steer(rule: &str) -> String {
+    format!("[[steer]]\n{rule}\n")
+}
+
+#[test]
+fn what_is_required_is_done_on_the_way() {
+    // Carried, because nothing else is allowed; then it shall be pushed as well, from a part of the floor.
+    let carried = Case { primitives: ALL.replace(",\"Push\"", ""), iterations: 3000, ..Case::default() };
+    let usual = solved(&carried);
+    let mut case = Case { primitives: ALL.to_owned(), ..carried };
+    let goals = case.goals.clone();
+    let rule = "require = true\nobject = \"mug\"\nprimitive = \"Push\"\nsurface = \"table\"\n";
+    case.goals = goals.clone() + &steer(&(rule.to_owned() + "base = { min = [-5, -5], max = [5, 0.2] }"));
+    let file = solved(&case);
+    let fits = |step: &&Step| step.primitive == PrimitiveName::PUSH && step.waypoints[0].base[1] <= 0.2;
+    assert!(file.steps.iter().any(|step| fits(&step)));
+    // The verifier counts by itself: the usual plan lacks it, and what is required may not be forbidden elsewhere.
+    let lacking = PlanFile { problem: file.problem.clone(), ..usual };
+    let refusal = verify_for::<Pr2>(&lacking, &VerifyOptions::default()).unwrap_err();
+    assert!(refusal.kind == RefusalKind::Steer && refusal.step.is_none(), "{refusal}");
+    let mut elsewhere = file.clone();
+    elsewhere.problem.steers[0].base.as_mut().unwrap().max[1] = -4.0;
+    assert_eq!(verify_for::<Pr2>(&elsewhere, &VerifyOptions::default()).unwrap_err().kind, RefusalKind::Steer);
+    let mut forbidden = file;
+    (forbidden.problem.steers[0].require, forbidden.problem.steers[0].forbid) = (false, true);
+    let refusal = verify_for::<Pr2>(&forbidden, &VerifyOptions::default()).unwrap_err();
+    assert!(refusal.kind == RefusalKind::Steer && refusal.step.is_some(), "{refusal}");
+
+    // What nothing can do is said at once; what says nothing is refused.
+    case.goals = goals.clone() + &steer("require = true\nprimitive = \"Push\"");
+    case.objects = mug("mug", [-0.2, 0.2], "pushable = false");
+    assert!(
+        matches!(&case.diagnosis().causes[..], [Cause::InfeasibleRule { rule: 0, lack }] if lack.contains("pushable"))
+    );
+    for (rule, why) in [
+        ("require = true\nforbid = true", "no step that both allow"),
+        ("require = true\nsurface = \"tabel\"", "did you mean `table`?"),
+        ("require = true\nprimitive = \"Base-Transit\"", "neither takes, sets down nor pushes"),
+        ("object = \"mug\"", "says nothing"),
+        ("requires = true", "did you mean `require`?"),
+    ] {
+        let text = format!("{}{}", case.text(), steer(rule));
+        let error = ProblemFile::from_toml(&text, "case").map_err(|error| error.to_string());
+        let error =
+            error.and_then(|problem| Registry::<Pr2>::new().check(&problem, "case").map_err(|error| error.to_string()));
+        assert!(error.as_ref().unwrap_err().contains(why), "{error:?}");
+    }
+}
+
 #[test]
 fn a_person_says_from_which_side_and_where_from() {
     let mut case = Case { primitives: ALL.replace(",\"Push\"", ""), iterations: 3000, ..Case::default() };
-    // The first plan of some seeds: what is asked for makes a hard problem of it.
-    let solved = |case: &Case| {
-        let found = (0..6).find_map(|seed| {
-            let request = PlanRequest { iterations: Some(case.iterations), ..PlanRequest::new(case.problem(), seed) };
-            plan(&Registry::<Pr2>::new(), &request, &Cancel::new(), &mut Silent).unwrap().plan
-        });
-        found.unwrap()
-    };
     case.goals += "[[steer]]\nobject = \"mug\"\nprimitive = \"Pick\"\nfrom_deg = [60, 120]\n";
     let file = solved(&case);
     assert!(sides(&file).iter().all(|side| (60.0..=120.0).contains(side)), "{:?}", sides(&file));

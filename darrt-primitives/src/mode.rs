@@ -49,6 +49,8 @@ pub struct Mode {
     /// The object beside, around or under which the hand stands: it must retreat in a straight line before it may do
     /// anything else. Not among the facts, so that they are shared before, beside it and after.
     engaged: Option<ObjectId>,
+    /// See [`Mode::done`].
+    done: u64,
 }
 
 /// What a mode says of every object and of the fingers.
@@ -62,7 +64,7 @@ struct Facts {
 
 impl Clone for Mode {
     fn clone(&self) -> Self {
-        Self { facts: Arc::clone(&self.facts), engaged: self.engaged }
+        Self { facts: Arc::clone(&self.facts), engaged: self.engaged, done: self.done }
     }
 
     /// Motions write their mode again and again into the same state: nothing is counted as long as it stays.
@@ -70,7 +72,7 @@ impl Clone for Mode {
         if !Arc::ptr_eq(&self.facts, &source.facts) {
             self.facts = Arc::clone(&source.facts);
         }
-        self.engaged = source.engaged;
+        (self.engaged, self.done) = (source.engaged, source.done);
     }
 }
 
@@ -78,7 +80,7 @@ impl Mode {
     /// Every object rests on the given surface, the hand is free and open by `gap_m`.
     pub fn resting(rests_on: impl IntoIterator<Item = SurfaceId>, gap_m: f64) -> Self {
         let rests_on = rests_on.into_iter().map(Some).collect();
-        Self { facts: Arc::new(Facts { rests_on, held: None, gap_m }), engaged: None }
+        Self { facts: Arc::new(Facts { rests_on, held: None, gap_m }), engaged: None, done: 0 }
     }
 
     /// The surface that `object` rests on; `None` while it is held.
@@ -104,6 +106,17 @@ impl Mode {
     /// Is the hand free: nothing held and nothing to retreat from?
     pub fn is_hand_free(&self) -> bool {
         self.facts.held.is_none() && self.engaged.is_none()
+    }
+
+    /// What has been done on the way here of up to 64 things that somebody wants to be done on the way, one bit each: what a
+    /// plan must contain is part of the state, so that a goal can ask for it. No transition forgets it.
+    pub fn done(&self) -> u64 {
+        self.done
+    }
+
+    /// Notes that these things have been done too.
+    pub fn note_done(&mut self, done: u64) {
+        self.done |= done;
     }
 
     /// The same with another opening of the empty hand. `None` while something is held.
@@ -137,7 +150,7 @@ impl Mode {
         }
         let mut facts = Facts { held: Some(Box::new(held)), gap_m, ..Facts::clone(&self.facts) };
         *facts.rests_on.get_mut(held.object.index())? = None;
-        Some(Self { facts: Arc::new(facts), engaged: None })
+        Some(Self { facts: Arc::new(facts), engaged: None, done: self.done })
     }
 
     /// The held object stands on `surface` and the hand has opened to `gap_m` around it. `None` if nothing is held.
@@ -145,7 +158,7 @@ impl Mode {
         let object = self.held()?.object;
         let mut facts = Facts { held: None, gap_m, ..Facts::clone(&self.facts) };
         *facts.rests_on.get_mut(object.index())? = Some(surface);
-        Some(Self { facts: Arc::new(facts), engaged: Some(object) })
+        Some(Self { facts: Arc::new(facts), engaged: Some(object), done: self.done })
     }
 }
 

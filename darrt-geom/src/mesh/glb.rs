@@ -175,7 +175,7 @@ fn document(bytes: &[u8]) -> Result<Document, String> {
     // The checks of the crate `gltf` look up the accessors of positions before they check that these exist.
     let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let positions = primitives.filter_map(|primitive| primitive.attributes.get(&Checked::Valid(Semantic::Positions)));
-    if let Some(missing) = positions.map(|accessor| accessor.value()).find(|&index| index >= root.accessors.len()) {
+    if let Some(missing) = positions.map(json::Index::value).find(|&index| index >= root.accessors.len()) {
         return Err(format!("positions are in accessor {missing}, there are {}", root.accessors.len()));
     }
     Document::from_json(root).map_err(|error| error.to_string())

@@ -126,7 +126,8 @@ pub struct PlanOptions {
     /// Begin with this plan, for the same problem or for one much like it: its first steps that are still right are kept
     #[arg(long, value_name = "PLAN")]
     pub from: Option<PathBuf>,
-    /// Keep so many steps of that plan, not as many as can be [`--at` is the same: plan on from behind this step]
+    /// Keep so many of its first steps, not as many as can be, and plan on from there; the hand must be free behind them [`--at` is
+    /// the same]
     #[arg(long, value_name = "STEPS", requires = "from", visible_alias = "at", value_parser = any_count, allow_hyphen_values = true)]
     pub keep: Option<u64>,
     /// Where there is no plan, write down why as JSON

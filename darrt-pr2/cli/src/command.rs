@@ -12,5 +12,6 @@ pub(crate) mod problems;
 pub(crate) mod robot;
 pub(crate) mod schema;
 pub(crate) mod show;
+mod source;
 mod tape;
 pub(crate) mod why_not;

@@ -92,6 +92,20 @@ fn a_robot_that_is_bolted_down_plans_what_it_reaches_and_says_why_not() {
 }
 
 #[test]
+fn a_first_problem_is_written_over_until_it_is_edited() {
+    let folder = tempfile::tempdir().unwrap();
+    let (folder, path) = (folder.path(), folder.path().join("first.toml"));
+    let arguments = ["robot", "check", "table-arm", "--no-picture", "--problem", "first.toml"];
+    for _ in 0..2 {
+        done(folder, &arguments);
+    }
+    let edited = std::fs::read_to_string(&path).unwrap().replacen("mass_kg", "# lighter\nmass_kg", 1) + "# mine\n";
+    std::fs::write(&path, &edited).unwrap();
+    assert!(refused(folder, &arguments).contains("would be lost"));
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), edited);
+}
+
+#[test]
 fn a_rail_is_a_joint_of_the_arm() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

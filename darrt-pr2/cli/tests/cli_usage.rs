@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use crate::program::darrt;
 
@@ -17,6 +17,15 @@ fn stdout(output: &Output) -> String {
 
 fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// Runs with something on the standard input.
+fn fed(folder: &Path, input: &[u8], arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_darrt"));
+    let command = command.current_dir(folder).args(arguments);
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    std::io::Write::write_all(&mut child.stdin.take().unwrap(), input).unwrap();
+    child.wait_with_output().unwrap()
 }
 
 /// Runs, expects this exit code and one message without a panic, and returns the message.
@@ -207,6 +216,19 @@ fn a_plan_on_the_standard_output_is_alone_there_and_other_results_are_files() {
     let plan: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(plan["format"], "darrt-plan");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "no file is written");
+    // Where it can be read again, like a problem.
+    let problem = darrt(folder.path(), &["problems", "--print", "bowl"]).stdout;
+    for (input, arguments, said) in [
+        (&output.stdout, &["check", "-"][..], "accepted"),
+        (&output.stdout, &["show", "-", "-o", "plan.svg"], "picture:  plan.svg"),
+        (&output.stdout, &["why-not", "-"], "nothing is wrong with it"),
+        (&problem, &["show", "-", "-o", "problem.svg"], "picture:  problem.svg"),
+        (&problem, &["why-not", "-", "--base=-1.0,0,0"], "nothing is wrong with it"),
+    ] {
+        let output = fed(folder.path(), input, arguments);
+        assert_eq!(code(&output), 0, "{arguments:?}: {}", stderr(&output));
+        assert!(stdout(&output).contains(said), "{arguments:?}: {}", stdout(&output));
+    }
     let message = refused(folder.path(), &["plan", "bowl", "-o", "a.json", "--record", "-"], 4);
     assert!(message.contains("is the standard output"), "{message}");
 }

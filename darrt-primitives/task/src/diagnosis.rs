@@ -125,11 +125,14 @@ impl Diagnosis {
                 Cause::GoalOccupied { object: object.clone(), by: by.clone(), occupant, at: *at }
             }
             PlanningError::BaseGoalBlocked { by, .. } => {
-                Cause::NoRobotGoal { tried: 1, blockers: ranked(BTreeMap::from([(by.clone(), 1)])) }
+                Cause::NoRobotGoal { tried: 1, blockers: ranked(BTreeMap::from([(by.clone(), 1)])), beyond_m: None }
             }
             PlanningError::Doubtful { error, .. } => return Self::of_error(problem, error),
             PlanningError::InfeasibleGoal { object, why } => {
                 Cause::InfeasibleGoal { object: object.clone(), lack: why.clone() }
+            }
+            PlanningError::InfeasibleRule { index, why } => {
+                Cause::InfeasibleRule { rule: *index as u64, lack: why.clone() }
             }
             PlanningError::MissingPrimitive { primitive, needs } => {
                 Cause::MissingPrimitive { primitive: primitive.clone(), needs: needs.clone() }
@@ -288,7 +291,9 @@ impl<'a, M: Manipulator> Inquest<'a, M> {
                 Err(blame) => *blockers.entry(culprit(m, ObjectId::new(usize::MAX), &blame)).or_default() += 1,
             }
         }
-        Some(Cause::NoRobotGoal { tried, blockers: ranked(blockers) })
+        let tool = goal.robot().and_then(|goal| goal.world_from_tool).filter(|_| tried == 0);
+        let beyond_m = tool.and_then(|tool| self.look.beyond_m(start, &[tool]));
+        Some(Cause::NoRobotGoal { tried, blockers: ranked(blockers), beyond_m })
     }
 
     /// What keeps one object from its goal.

@@ -62,7 +62,7 @@ impl FileKind {
     /// Why a file of this kind is no problem file; `None` if it is one.
     pub fn instead_of_problem(self, file: &str) -> Option<String> {
         if self == Self::Plan && file == STDIN_NAME {
-            let why = "is a plan, not a problem; judge it with `darrt check -`; other commands take plans from files";
+            let why = "is a plan, not a problem; judge it with `darrt check -`, draw it with `darrt show -`";
             return Some(why.to_owned());
         }
         let file = shell_word(file);

@@ -41,6 +41,7 @@ pub mod replan;
 pub mod robot;
 pub mod robot_file;
 pub mod schema;
+mod steer_feasibility;
 mod supports;
 #[cfg(test)]
 mod testing;

@@ -50,7 +50,7 @@ mod steered;
 pub mod variants;
 
 pub(crate) use steered::STEER;
-use steered::Steered;
+use steered::{Required, Steered};
 use variants::StrategyChange;
 
 /// Bound on the travel of any point of the robot between two nodes of the tree, metres; the hand moves about a third.
@@ -274,6 +274,7 @@ fn prepare_watched<M: TaskRobot>(
     let (robot, arm) = M::build(&file.robot)?;
     let allowed: Vec<_> = registry.allowed(file).collect();
     crate::goal_feasibility::check_feasibility(file, allowed.iter().copied(), &robot)?;
+    crate::steer_feasibility::check_rules(file, &allowed, &robot)?;
     let robot = if request.bases_from_reachability { robot.with_bases_from_reachability() } else { robot };
     let Built { world, start, goal, scene, near } = world::build_with(registry, file, robot, arm)?;
     let mut doubts = of_meshes(file, &scene, world.movables());
@@ -299,15 +300,17 @@ fn prepare_watched<M: TaskRobot>(
     let verifier =
         FileVerifier { exporter: Arc::clone(&exporter), facts, cancel: cancel.clone(), watch: Arc::clone(watch) };
     let ids: Vec<_> = allowed.iter().map(|(id, _)| *id).collect();
-    let rules = steered::rules(&file.steers, &ids);
+    let rules = steered::rules(&file.steers, &ids, &scene);
+    let (goal, marks) = (Arc::new(goal), steered::required(&rules));
     let steered = |part| {
-        if rules.is_empty() { part } else { Box::new(Steered { part, rules: Arc::clone(&rules) }) as _ }
+        let (rules, goal) = (Arc::clone(&rules), Arc::clone(&goal));
+        if rules.is_empty() { part } else { Box::new(Steered { part, rules, goal }) as _ }
     };
     let primitives = registry.build_primitives(file)?.into_iter().map(steered);
     let problem = Problem::new(Parts {
         domain: world,
         start,
-        goal: Box::new(Timed { part: goal, watch: Arc::clone(watch) }),
+        goal: Box::new(Timed { part: Required { part: Arc::clone(&goal), marks }, watch: Arc::clone(watch) }),
         primitives: primitives.map(|part| Box::new(Timed { part, watch: Arc::clone(watch) }) as _).collect(),
         validity: Box::new(Timed { part: validity, watch: Arc::clone(watch) }),
         verifier: Box::new(verifier),

@@ -106,6 +106,14 @@ pub enum PlanningError {
         /// What each of its goals lacks.
         why: String,
     },
+    /// Nothing can do what a rule of the problem requires.
+    #[error("`steer[{index}]` requires what no step can do: {why}")]
+    InfeasibleRule {
+        /// Which rule, from 0.
+        index: usize,
+        /// What is missing, by object.
+        why: String,
+    },
     /// Steps of an old plan that shall be kept cannot be.
     #[error("the first {keep} steps of the plan cannot be kept: {why}")]
     CannotKeep {
@@ -134,7 +142,8 @@ impl PlanningError {
             Self::GoalBlocked { .. }
             | Self::GoalEnclosed { .. }
             | Self::BaseGoalBlocked { .. }
-            | Self::InfeasibleGoal { .. } => true,
+            | Self::InfeasibleGoal { .. }
+            | Self::InfeasibleRule { .. } => true,
             Self::Doubtful { error, .. } => error.is_impossible(),
             _ => false,
         }

@@ -313,10 +313,12 @@ impl<M: TaskRobot> Registry<M> {
             Err(error) => return Some(Flaw::Inconsistent(format!("cannot be used: {error}")).at("robot")),
         };
         let [models, postures] = [&models, &postures].map(|names| names.iter().map(String::as_str).collect::<Vec<_>>());
-        names::unknown(problem, &models, &primitives, &postures, &samplers, &distances).or_else(|| {
-            let mut allowed = self.primitives.iter().filter(|entry| is_allowed(problem, entry.id.name()));
-            allowed.find_map(|entry| (entry.build)(problem).err())
-        })
+        names::unknown(problem, &models, &primitives, &postures, &samplers, &distances)
+            .or_else(|| {
+                let mut allowed = self.primitives.iter().filter(|entry| is_allowed(problem, entry.id.name()));
+                allowed.find_map(|entry| (entry.build)(problem).err())
+            })
+            .or_else(|| crate::steer_feasibility::idle_rule(problem, self.allowed(problem)))
     }
 
     /// Every primitive is made of others, which must be allowed too.

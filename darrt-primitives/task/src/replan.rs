@@ -6,7 +6,7 @@
 
 mod splice;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use darrt_core::budget::{Cancel, Stop};
@@ -24,7 +24,7 @@ use crate::problem_file::geometry::{Geometry, StartingObject};
 use crate::problem_file::{Object, ProblemFile};
 use crate::registry::Registry;
 use crate::robot::{RobotFacts, TaskRobot};
-use crate::verify::{Proof, Refusal, VerifyOptions, verify_unless};
+use crate::verify::{Proof, Refusal, RefusalKind, VerifyOptions, rules_met, verify_unless};
 use crate::world::{self, Built};
 use splice::Spliced;
 
@@ -86,12 +86,13 @@ pub fn replan<M: TaskRobot>(
         Err(refusal) => (refusal.step.map_or(0, |step| step.saturating_sub(1) as usize), Some(refusal.to_string())),
     };
     let good = old.allowed(good);
-    if let (Ok(proof), true) = (judged, request.keep.is_none_or(|keep| keep == of) && good == of) {
-        let result = as_it_is(registry, &old.file, proof).clocked(&facts);
+    if let (Ok(proof), true) = (&judged, request.keep.is_none_or(|keep| keep == of) && good == of) {
+        let result = as_it_is(registry, &old.file, proof.clone()).clocked(&facts);
         return Ok(Replanned { result, kept: of, tail: 0, of, refused: None });
     }
-    // What is whole and yet refused fails at the goal.
-    let good = if good == 0 && refused.is_some() && old.holds_but_for_the_goal() { of } else { good };
+    // What is whole and yet refused fails at the goal, or lacks what is required on the way there.
+    let is_lacking = judged.as_ref().is_err_and(|refusal| refusal.kind == RefusalKind::Steer && refusal.step.is_none());
+    let good = if good == 0 && refused.is_some() && !is_lacking && old.holds_but_for_the_goal() { of } else { good };
     let free = |count: &usize| old.is_free_after(*count);
     let kept = match request.keep {
         Some(keep) if keep > good => {
@@ -265,8 +266,22 @@ impl Old<'_> {
                 (object.on, object.at, object.yaw) = (standing.on, standing.at, standing.yaw);
             }
         }
+        self.without_rules_met(&mut problem, |step| step < kept)?;
         problem.validate(&problem.name).ok()?;
         Some(problem)
+    }
+
+    /// Takes out of a problem the rules whose `require` one of these steps of the old plan fulfils.
+    fn without_rules_met(&self, problem: &mut ProblemFile, steps: impl Fn(usize) -> bool) -> Option<()> {
+        if self.file.problem.steers.iter().all(|rule| !rule.require) {
+            return Some(());
+        }
+        let by_step = rules_met(&self.file, self.facts).ok()?;
+        let met = by_step.iter().enumerate().filter(|(step, _)| steps(*step)).flat_map(|(_, met)| met);
+        let met: BTreeSet<_> = met.collect();
+        let all = self.file.problem.steers.iter().enumerate();
+        problem.steers = all.filter(|(index, _)| !met.contains(index)).map(|(_, rule)| rule.clone()).collect();
+        Some(())
     }
 
     /// The joints of the arm.

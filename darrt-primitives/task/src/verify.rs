@@ -9,6 +9,7 @@
 //! | in which order is what checked? | `judge` |
 //! | what may a step do, what may it touch? | `mode` |
 //! | what lies between two waypoints? | `motion` |
+//! | what is so far from all of it that nobody need look? | `region` |
 //! | which solids may not touch, do they? | `stage`, `solid`; looked at plainly: `stage::plain` |
 //! | how far do they keep from each other? | `margins`, `near` |
 //! | what is right and still odd? | `judge::remarks`, `warning` |
@@ -38,6 +39,7 @@ mod motion;
 mod near;
 mod options;
 mod refusal;
+mod region;
 mod robot;
 mod schedule;
 mod solid;
@@ -52,6 +54,8 @@ pub use options::VerifyOptions;
 pub use refusal::{Refusal, RefusalKind};
 pub use stage::SmallestClearance;
 pub use warning::{Warning, WarningKind};
+
+use std::collections::BTreeSet;
 
 use darrt_core::budget::Cancel;
 
@@ -133,6 +137,11 @@ pub fn verify_clock(
 ) -> Result<(), Refusal> {
     let timing = plan.timing.as_ref();
     timing.map_or(Ok(()), |timing| clock::check(plan, timing, robot, options, cancel))
+}
+
+/// By step of the plan: which of the rules with `require` of its problem it fulfils, by their places in the list.
+pub(crate) fn rules_met(plan: &PlanFile, robot: &RobotFacts) -> Result<Vec<BTreeSet<usize>>, Refusal> {
+    steer::met_by_step(plan, robot)
 }
 
 /// [`verify_with`] for a plan of the robot `M`, as its problem describes it.

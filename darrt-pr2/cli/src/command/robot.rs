@@ -7,11 +7,14 @@ use darrt_task::file_robot::inspect::{Inspection, inspect};
 use darrt_task::file_robot::{guess, shipped, trial};
 use darrt_task::picture::{Extent, Format, Story};
 use darrt_task::problem_file::ProblemFile;
+use darrt_task::problem_file::read::MAX_BYTES;
 use darrt_task::program::Program;
 use darrt_task::robot_file::Source;
 use darrt_task::text::shell_word;
+use darrt_task::text_file;
 
 use crate::args::{RobotCheckOptions, RobotCommand, RobotListOptions, RobotNewOptions, RobotOptions};
+use crate::bench::digest::digest;
 use crate::drawing;
 use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
@@ -62,9 +65,14 @@ fn check(program: &dyn Program, options: &RobotCheckOptions, output: &mut Output
             let text = format!("{}: is there already and is no problem, it would be lost", path.display());
             return Err(Failure::input(text));
         }
+        if path.exists() && !is_unedited(path) {
+            let text =
+                "is there already and was edited, or written by somebody else, and would be lost; give another name";
+            return Err(Failure::input(format!("{}: {text}", path.display())));
+        }
         let place = output::writable_problem(path)?;
         let line = robot_line(name, path);
-        output::write_file(&place, trial::problem(&inspection, &line, inspection.drives))?;
+        output::write_file(&place, sealed(&trial::problem(&inspection, &line, inspection.drives)))?;
         output.print(&format!("problem:  {}", path.display()))?;
     }
     if !options.no_picture {
@@ -77,6 +85,21 @@ fn check(program: &dyn Program, options: &RobotCheckOptions, output: &mut Output
         output.print("nothing is odd")?;
     }
     Ok(Exit::Solved)
+}
+
+/// What begins the last line of a first problem; the digest of all lines before it follows.
+const SEAL: &str = "# As `darrt robot check` wrote it, which writes over it until it is edited: ";
+
+/// The text of a problem with a last line by which it is known as long as nobody edits it.
+fn sealed(text: &str) -> String {
+    let text = text.trim_end();
+    format!("{text}\n{SEAL}{}\n", digest(text.as_bytes()))
+}
+
+/// Is a problem there as it was written by this program?
+fn is_unedited(path: &Path) -> bool {
+    let Ok(text) = text_file::read(path, MAX_BYTES) else { return false };
+    text.is_empty() || text.rsplit_once(SEAL).is_some_and(|(before, _)| sealed(before) == text)
 }
 
 /// Is this the name of a robot that ships?

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::robot;
+use super::source::{Given, on_stdin};
 use crate::args::ShowOptions;
 use crate::exit::{Exit, Failure};
 use crate::output::{self, Output};
@@ -151,12 +152,16 @@ struct Source {
 fn read(program: &dyn Program, source: &str) -> Result<Source, Failure> {
     let facts =
         |problem: &ProblemFile| program.facts(problem).map_err(|error| Failure::input(format!("{source}: {error}")));
-    if program.problems().find(source).is_some() || !is_plan(Path::new(source)) {
-        let problem = program.open(source)?;
-        let robot = facts(&problem)?;
-        return Ok(Source { story: Story::of_problem(&problem, &robot)?, plan: None, robot });
-    }
-    let plan = PlanFile::read(source)?;
+    let is_problem = program.problems().find(source).is_some() || !is_plan(Path::new(source));
+    let plan = match on_stdin(program, source)? {
+        Some(Given::Plan(plan)) => *plan,
+        None if !is_problem => PlanFile::read(source)?,
+        given => {
+            let problem = if let Some(Given::Problem(problem)) = given { *problem } else { program.open(source)? };
+            let robot = facts(&problem)?;
+            return Ok(Source { story: Story::of_problem(&problem, &robot)?, plan: None, robot });
+        }
+    };
     plan.problem.validate(source)?;
     let robot = facts(&plan.problem)?;
     let story = Story::of_plan(&plan, &robot).map_err(|error| Failure::input(format!("{source}: {error}")))?;

@@ -7,6 +7,7 @@ use darrt_core::observe::Silent;
 use darrt_task::diagnosis::cause::Stage;
 use darrt_task::diagnosis::why_not::{Fault, Idea, Variant, WhyNot, WhyNotRequest, Wrong};
 use darrt_task::file_kind::FileKind;
+use darrt_task::plan_file::PlanFile;
 use darrt_task::planning::PlanRequest;
 use darrt_task::program::Program;
 use darrt_task::replan::ReplanRequest;
@@ -14,6 +15,7 @@ use darrt_task::text::{counted, on_one_line};
 use darrt_task::verify::{VerifyOptions, verify_with};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
+use super::source::{Given, on_stdin};
 use super::{check, plan};
 use crate::args::WhyNotOptions;
 use crate::diagnosis;
@@ -27,9 +29,15 @@ use crate::output::{self, Output};
 pub(crate) fn run(program: &dyn Program, options: &WhyNotOptions, output: &mut Output) -> Result<Exit, Failure> {
     let is_plan = program.problems().find(&options.source).is_none()
         && FileKind::of_file(Path::new(&options.source)) == Some(FileKind::Plan);
-    if is_plan {
-        return of_plan(program, options, output);
-    }
+    let problem = match on_stdin(program, &options.source)? {
+        Some(Given::Plan(plan)) => return of_plan(program, options, *plan, output),
+        Some(Given::Problem(problem)) => Some(*problem),
+        None if is_plan => {
+            let plan = check::read(program, Path::new(&options.source))?;
+            return of_plan(program, options, plan, output);
+        }
+        None => None,
+    };
     let idea = match (options.tool, options.base, &options.joints) {
         (Some([x, y, z, roll, pitch, yaw]), None, None) => Idea::Hand {
             world_from_tool: Isometry3::from_parts(
@@ -47,7 +55,8 @@ pub(crate) fn run(program: &dyn Program, options: &WhyNotOptions, output: &mut O
         }
         (_, base, joints) => Idea::State { base, joints: joints.clone() },
     };
-    let request = WhyNotRequest { problem: program.open(&options.source)?, idea };
+    let problem = problem.map_or_else(|| program.open(&options.source), Ok)?;
+    let request = WhyNotRequest { problem, idea };
     let answer = program.why_not(&request).map_err(|error| Failure::input(format!("{}: {error}", options.source)))?;
     if options.json {
         output.print(&output::json(&answer, "the answer")?)?;
@@ -59,12 +68,16 @@ pub(crate) fn run(program: &dyn Program, options: &WhyNotOptions, output: &mut O
 }
 
 /// Judges a plan; one that is refused, or only the beginning of one, is planned on from its last step that is right.
-fn of_plan(program: &dyn Program, options: &WhyNotOptions, output: &mut Output) -> Result<Exit, Failure> {
+fn of_plan(
+    program: &dyn Program,
+    options: &WhyNotOptions,
+    from: PlanFile,
+    output: &mut Output,
+) -> Result<Exit, Failure> {
     if options.tool.is_some() || options.base.is_some() || options.joints.is_some() {
         let text = format!("{}: is a plan; --tool, --base and --joints are asked of a problem", options.source);
         return Err(Failure::input(text));
     }
-    let from = check::read(program, Path::new(&options.source))?;
     let is_partial = from.partial.is_some();
     let mut request = PlanRequest::new(from.problem.clone(), options.seed);
     request.iterations = Some(options.iterations);
@@ -201,6 +214,7 @@ fn of_fault(fault: &Fault) -> String {
                 Stage::Overhang => format!("the rim of {object} overhangs no edge, so it cannot be taken by it"),
                 Stage::Hold => format!("no grasp of {object} holds it"),
                 Stage::Support => format!("{object} does not stand on what it may stand on"),
+                Stage::Room => format!("{object} itself has no room there{way}"),
                 Stage::Hand => format!("the hand has no room at {object}{way}"),
                 Stage::Approach => format!("there is no room for the straight way to {object}{way}"),
                 Stage::Reach => format!("the arm reaches {object} so from none of {bases} tried"),

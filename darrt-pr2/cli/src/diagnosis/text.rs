@@ -45,13 +45,19 @@ pub(crate) fn of_cause(cause: &Cause) -> Vec<String> {
             at(*place),
             names(others)
         )],
+        Cause::NoRobotGoal { tried: 0, beyond_m: Some(metres), .. } => {
+            vec![format!(
+                "the goal of the robot: its tool is beyond the arm by {metres:.2} m or more from every base tried"
+            )]
+        }
         Cause::NoRobotGoal { tried: 0, .. } => {
             vec!["the goal of the robot: no base and arm were found that meet all its parts together".to_owned()]
         }
-        Cause::NoRobotGoal { tried, blockers } => {
+        Cause::NoRobotGoal { tried, blockers, .. } => {
             vec![format!("the goal of the robot: 0 of {tried} places free{}", in_the_way(blockers))]
         }
         Cause::Doubted { what } => vec![format!("doubted before the search, and not refuted: {what}")],
+        Cause::InfeasibleRule { rule, lack } => vec![format!("`steer[{rule}]` requires what no step can do: {lack}")],
         Cause::Steered { steps } => vec![format!("`steer` forbids what was tried: {}", plain_names(steps))],
         Cause::Refused { reason } => vec![format!("a plan was found, but the verifier refused it: {reason}")],
     }
@@ -97,6 +103,7 @@ fn of_hands(hands: &Hands) -> String {
         Stage::Overhang => format!("`{object}` is only taken by its rim, which overhangs no edge {}", at(*place)),
         Stage::Hold => format!("{subject}: 0 of {tried} hold it"),
         Stage::Support => format!("{subject}: 0 of {tried} on what it may stand on"),
+        Stage::Room => format!("{subject}: 0 of {came} with room for `{object}` itself, which meets {bodies}"),
         Stage::Hand => format!("{subject}: 0 of {came} free, the hand meets {bodies}"),
         Stage::Approach => format!("{subject}: 0 of {came} with room for the straight way there, {bodies} in the way"),
         Stage::Reach => match beyond {

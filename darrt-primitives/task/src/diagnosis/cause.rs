@@ -51,6 +51,8 @@ pub enum Stage {
     Hold,
     /// The object does not stand there: beside a surface that it may stand on, or too near to its edge.
     Support,
+    /// The object itself meets something there.
+    Room,
     /// The hand alone, without an arm, meets something there.
     Hand,
     /// It has no room for the shortest straight way to there.
@@ -264,11 +266,22 @@ pub enum Cause {
         tried: u64,
         /// What was in the way, most first.
         blockers: Vec<Blocker>,
+        /// How far the wanted pose of the tool is from the nearest that the arm reaches from any base tried, metres, if it reaches
+        /// that of none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        beyond_m: Option<f64>,
     },
     /// What made a plan unlikely before the search, and was not refuted by a plan.
     Doubted {
         /// In words.
         what: String,
+    },
+    /// No step can do what a rule of the problem requires.
+    InfeasibleRule {
+        /// Which rule of `steer`, from 0.
+        rule: u64,
+        /// What is missing, by object.
+        lack: String,
     },
     /// Rules of the problem kept steps from being taken; that is no reason by itself.
     Steered {
@@ -333,6 +346,7 @@ impl Cause {
             Self::NoHand { hands } => Some(&hands.object),
             Self::NoPush { pushes, .. } => Some(&pushes.object),
             Self::MissingPrimitive { .. }
+            | Self::InfeasibleRule { .. }
             | Self::NoRobotGoal { .. }
             | Self::Doubted { .. }
             | Self::Steered { .. }

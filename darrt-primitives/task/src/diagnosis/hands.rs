@@ -261,7 +261,7 @@ impl<'a, M: Manipulator> Look<'a, M> {
     }
 
     /// How far the nearest of these hands is from a place where a base that is free reaches it; `None` if none was found.
-    fn beyond_m(&self, state: &TabletopState<M>, hands: &[Isometry3<f64>]) -> Option<f64> {
+    pub(super) fn beyond_m(&self, state: &TabletopState<M>, hands: &[Isometry3<f64>]) -> Option<f64> {
         let slanted = std::f64::consts::FRAC_1_SQRT_2;
         let sides = [(1.0, 0.0), (slanted, slanted), (0.0, 1.0), (-slanted, slanted)];
         let level = sides.into_iter().flat_map(|(x, y)| [Vector3::new(x, y, 0.0), Vector3::new(-x, -y, 0.0)]);
@@ -355,6 +355,14 @@ impl<M: Manipulator> Ends<'_, '_, M> {
         End { stage, body: blame.map(|blame| culprit(self.look.m, self.id, &blame)) }
     }
 
+    /// Whether the object itself meets something where it is in `state`, and what.
+    fn no_room(&self, state: &TabletopState<M>) -> Option<End> {
+        let (m, contacts) = (self.look.m, Contacts::default());
+        let blame = m.collision_scene().without_robot().check(m.manipulator(), state, &contacts).err()?;
+        let own = &self.movable.body.name;
+        (blame.first == *own || blame.second == *own).then(|| self.blamed(Stage::Room, Some(blame)))
+    }
+
     fn refused(&self, stage: Stage, refused: &Refused<M>) -> End {
         match refused.why(self.look.m) {
             Infeasible::Blocked(blame) => self.blamed(stage, Some(blame)),
@@ -420,7 +428,9 @@ impl<M: Manipulator> Ends<'_, '_, M> {
         after.place(id, &pose);
         let letting_go = Contacts { fingers: Some((id, TouchReason::Grasp)), support: Some((id, surface)) };
         for probe in [&before, &after] {
-            probe.check_hand(&tool, &letting_go).map_err(|blame| self.blamed(Stage::Hand, Some(blame)))?;
+            probe.check_hand(&tool, &letting_go).map_err(|blame| {
+                self.no_room(after.state()).unwrap_or_else(|| self.blamed(Stage::Hand, Some(blame)))
+            })?;
         }
         let none = Contacts::default();
         let directions = &m.settings().place.approach_directions;

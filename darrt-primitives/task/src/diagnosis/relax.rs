@@ -198,7 +198,7 @@ impl Relaxation {
             }),
             Self::Grasp { .. } => has(Stage::Hand) || has(Stage::Overhang) || has(Stage::Arm),
             Self::WiderBounds { .. } => blockers.contains(&super::hands::BOUNDS),
-            Self::LessMargin { .. } => has(Stage::Hand) || has(Stage::Approach),
+            Self::LessMargin { .. } => has(Stage::Room) || has(Stage::Hand) || has(Stage::Approach),
             _ => false,
         };
         let all = Self::all(registry, problem).into_iter().chain(Self::groups(problem));

@@ -47,6 +47,9 @@ macro_rules! range {
 /// Smallest size of a body, metres.
 const SIZE: f64 = 1e-6;
 
+/// What the contact margin is at least, metres; no other margin but that of edges is less than it.
+const LEAST_MARGIN: f64 = 1e-4;
+
 const RANGES: &[Range] = &[
     range!("ProblemFile", "version", "version", 1.0, Some(1.0)),
     range!("Object", "mass_kg", "object.0.mass_kg", open 0.0, None),
@@ -86,6 +89,11 @@ const RANGES: &[Range] = &[
     range!("Push", "fingertip_clearance_m", "push.fingertip_clearance_m", 0.0, Some(1.0)),
     range!("Push", "position_error_m", "push.position_error_m", 0.0, Some(1.0)),
     range!("Push", "edge_distance_m", "push.edge_distance_m", 0.0, Some(1.0)),
+    range!("Safety", "robot_margin_m", "safety.robot_margin_m", LEAST_MARGIN, Some(0.5)),
+    range!("Safety", "held_margin_m", "safety.held_margin_m", LEAST_MARGIN, Some(0.5)),
+    range!("Safety", "object_margin_m", "safety.object_margin_m", LEAST_MARGIN, Some(0.5)),
+    range!("Safety", "least_margin_m", "safety.least_margin_m", LEAST_MARGIN, Some(0.5)),
+    range!("Safety", "contact_margin_m", "safety.contact_margin_m", LEAST_MARGIN, Some(0.5)),
     range!("Safety", "edge_margin_m", "safety.edge_margin_m", 0.0, Some(0.5)),
     range!("Sampling", "object_share", "sampling.object_share", 0.0, Some(1.0)),
     range!("Sampling", "goal_bias", "sampling.goal_bias", 0.0, Some(1.0)),

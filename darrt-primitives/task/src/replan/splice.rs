@@ -7,6 +7,7 @@ use nalgebra::Isometry3;
 
 use super::{Old, ReplanRequest, Standing, near};
 use crate::plan_file::{PlanFile, Pose, Step, Waypoint};
+use crate::planning::variants::StrategyChange;
 use crate::planning::{PlanRequest, PlanResult, plan_without_clock};
 use crate::planning_error::PlanningError;
 use crate::problem_file::{Goal, GoalState, ObjectGoal, ProblemFile, RobotGoal, Symmetry};
@@ -17,7 +18,9 @@ use crate::verify::{VerifyOptions, verify_unless};
 /// How near objects and robot must come to where the old plan goes on, metres and radians: what a search ends at exactly.
 const EXACTLY: f64 = 1e-6;
 /// Iterations after which the gap is given up: what is near a plan takes few.
-const ITERATIONS: u64 = 300;
+const ITERATIONS: u64 = 150;
+/// Share of the samples for the gap that are its goal, at least.
+const GOAL_BIAS: f64 = 0.5;
 
 /// A plan with a new piece in its middle.
 pub(super) struct Spliced {
@@ -42,8 +45,10 @@ impl Old<'_> {
         let Some(join) = self.taken_up_behind(bad) else { return Ok(None) };
         let Some(problem) = self.gap(kept, join) else { return Ok(None) };
         let most = request.plan.iterations.or(problem.budget.iterations).unwrap_or(ITERATIONS).min(ITERATIONS);
-        let hints = self.hints(kept);
-        let rest = PlanRequest { problem, hints, iterations: Some(most), ..request.plan.clone() };
+        let mut rest = PlanRequest { problem, iterations: Some(most), ..request.plan.clone() };
+        // The goal is near, and what the old plan did later leads away from it.
+        rest.problem.sampling.goal_bias = rest.problem.sampling.goal_bias.max(GOAL_BIAS);
+        rest.changes.push(StrategyChange::OneTree);
         let (mut result, _) = plan_without_clock(registry, &rest, self.cancel, observer)?;
         let Some(found) = result.plan.take() else { return Ok(None) };
         let Some(whole) = self.with_tail(self.joined(kept, &found), join) else { return Ok(None) };
@@ -69,7 +74,10 @@ impl Old<'_> {
             for (name, value) in &mut facts.start {
                 *value = *start.joints.get(name.as_str())?;
             }
-            let tail = PlanFile { problem: self.rest(join)?, start, steps, ..self.file.clone() };
+            let mut problem = self.rest(join)?;
+            // What is required may come before.
+            problem.steers.retain(|rule| !rule.require);
+            let tail = PlanFile { problem, start, steps, ..self.file.clone() };
             match verify_unless(&tail, &facts, &VerifyOptions::default(), self.cancel) {
                 Ok(_) => return Some(join),
                 // At the goal, or at one of its steps.
@@ -110,6 +118,7 @@ impl Old<'_> {
             tolerance_rad: EXACTLY,
         };
         problem.goal = Goal { objects, robot: Some(robot) };
+        self.without_rules_met(&mut problem, |step| step < kept || step >= join)?;
         problem.validate(&problem.name).ok()?;
         Some(problem)
     }

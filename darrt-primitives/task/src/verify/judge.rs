@@ -23,6 +23,7 @@ use super::mode::{Act, Mode, Permits};
 use super::motion::{Segment, State};
 use super::options::VerifyOptions;
 use super::refusal::{Refusal, RefusalKind, Site};
+use super::region::Region;
 use super::robot::{Robot, world_from_robot};
 use super::stage::{Hit, PairKind, Rule, Stage};
 use super::steer;
@@ -114,7 +115,8 @@ impl<'a> Judge<'a> {
         let robot = Robot::new(facts)?;
         let world = World::new(&plan.problem)?;
         let margins = Margins::of(&plan.problem);
-        let stage = Stage::new(&robot, &world, options.support_m, margins);
+        let region = if options.is_plain { Region::everywhere() } else { Region::of(plan, &robot, &world) };
+        let stage = Stage::new(&robot, &world, options.support_m, margins, &region);
         let approach = Approach::new(&robot)
             .ok_or_else(|| Refusal::whole(RefusalKind::Problem, "more joints move than any robot of this kind has"))?;
         let modes = world.movables.iter().map(|m| Mode::Resting { surface: m.start_surface }).collect();
@@ -149,14 +151,19 @@ impl<'a> Judge<'a> {
     pub(super) fn run(mut self) -> Result<Proof, Refusal> {
         let mut here = self.start()?;
         let mut last = &self.plan.start;
+        let (rules, mut met) = (&self.plan.problem.steers, BTreeSet::new());
         for (number, step) in (1..).zip(&self.plan.steps) {
             let site = self.site(number, step)?;
-            let before = (!self.plan.problem.steers.is_empty()).then(|| here.clone());
+            let before = (!rules.is_empty()).then(|| here.clone());
             here = self.step(site, step, last, here)?;
             if let Some(before) = before {
-                steer::check(&self.plan.problem.steers, site, step, (&self.world, &self.robot), (&before, &here))?;
+                steer::check(rules, site, step, (&self.world, &self.robot), (&before, &here), &mut met)?;
             }
             last = step.waypoints.last().unwrap_or(last);
+        }
+        // What is only the beginning of a plan may do later what is required.
+        if self.plan.partial.is_none() {
+            steer::check_whole(rules, &met)?;
         }
         goal::check(
             &self.plan.problem,

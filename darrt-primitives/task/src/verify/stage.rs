@@ -10,6 +10,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::approach::{Movers, Speeds};
 use super::margins::{self, MarginKind, Margins, NEARLY_M, STRAY_M};
+use super::region::Region;
 use super::robot::{LinkSolid, Robot};
 use super::schedule::{AHEAD_PARTS, Class, Due, Going, Pairs, ROUNDING_M, RULES, smaller};
 use super::solid::{Placed, Solid, exact, gap_across, lower_bound};
@@ -157,8 +158,8 @@ pub(super) struct Stage {
 const STANDING: usize = MarginKind::ALL.len();
 
 impl Stage {
-    /// `support_m`: how deep an object may press into what carries it.
-    pub(super) fn new(robot: &Robot, world: &World<'_>, support_m: f64, margins: Margins) -> Self {
+    /// `support_m`: how deep an object may press into what carries it; `region`: where the plan takes place.
+    pub(super) fn new(robot: &Robot, world: &World<'_>, support_m: f64, margins: Margins, region: &Region) -> Self {
         let links = robot.solids.len();
         let objects = world.movables.len();
         let first_fixed = links + objects;
@@ -167,6 +168,8 @@ impl Stage {
         solids.extend(world.fixed.iter().map(|(solid, _)| solid.clone()));
         let mut poses = vec![Isometry3::identity(); first_fixed];
         poses.extend(world.fixed.iter().map(|(_, pose)| *pose));
+        let all = world.fixed.iter().enumerate();
+        let near: Vec<_> = all.filter(|(_, (solid, pose))| !region.is_far(solid, pose)).map(|(f, _)| f).collect();
         let mut pairs = Vec::new();
         let mut add = |a, b, kind| {
             let (across, rule) = (Vector3::zeros(), Rule::Apart(MarginKind::Itself));
@@ -175,7 +178,7 @@ impl Stage {
         for (i, solid) in robot.solids.iter().enumerate() {
             (0..objects).for_each(|o| add(i, links + o, PairKind::LinkObject { link: solid.link, object: o }));
             let lowest_m = robot.lowest_m(i);
-            for f in first_fixed..solids.len() {
+            for f in near.iter().map(|f| first_fixed + f) {
                 // What the base carries at a height of its own never comes nearer to a plane that it drives on.
                 if lowest_m.is_none_or(|lowest_m| !lies_below(&solids[f], &poses[f], lowest_m)) {
                     add(i, f, PairKind::LinkFixed { link: solid.link, fixed: f - first_fixed });
@@ -184,7 +187,7 @@ impl Stage {
         }
         robot.self_pairs.iter().for_each(|&(a, b)| add(a, b, PairKind::Links));
         for o in 0..objects {
-            for f in 0..world.fixed.len() {
+            for &f in &near {
                 add(links + o, first_fixed + f, PairKind::ObjectFixed { object: o, fixed: f });
             }
             (o + 1..objects).for_each(|other| add(links + o, links + other, PairKind::Objects(o, other)));

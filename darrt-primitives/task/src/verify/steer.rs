@@ -1,71 +1,148 @@
 //! Steps keep to the rules by which a person steers a plan.
 
-use nalgebra::{Point3, Vector2};
+use std::collections::BTreeSet;
+
+use nalgebra::{Point2, Point3, Vector2};
 
 use super::motion::State;
 use super::refusal::{Refusal, RefusalKind, Site};
 use super::robot::{Robot, world_from_robot};
 use super::world::World;
-use crate::plan_file::Step;
-use crate::problem_file::Steer;
+use crate::plan_file::{PlanFile, Step, Waypoint};
+use crate::problem_file::{Region, Steer};
+use crate::robot::RobotFacts;
 use darrt_primitives::contract::HandUse;
 
-/// A hand that is no farther beside the centre of an object is above it, metres. More than the planner allows, because the same
-/// place has other digits here.
-const ABOVE_M: f64 = 0.011;
+/// A hand that is no farther beside the centre of an object is above it, metres,
+const ABOVE_M: f64 = 0.01;
+/// and so much more or less of it is forgiven, because the same place has other digits here.
+const ABOVE_SLACK_M: f64 = 0.001;
+/// An object stands on a surface if its bottom is no farther above or below it, metres.
+const ON_TOP_M: f64 = 2e-3;
 /// The hand is where a point is that lies so far behind its tool frame, metres.
 const WRIST_M: f64 = 0.1;
 /// What rounding may do to an angle, degrees, and to a place, metres.
 const ROUNDING: f64 = 1e-6;
 
-/// Checks one step, from where everything stands before it to where it stands behind it.
+/// Checks one step, from where everything stands before it to where it stands behind it; notes in `met` which of the rules with
+/// `require` it fulfils.
 pub(super) fn check(
     rules: &[Steer],
     site: Site<'_>,
     step: &Step,
     (world, robot): (&World<'_>, &Robot),
     (before, after): (&State, &State),
+    met: &mut BTreeSet<usize>,
 ) -> Result<(), Refusal> {
     let Some(name) = step.object.as_deref().filter(|_| site.contract.manipulates()) else { return Ok(()) };
     let at = if site.contract.hand == HandUse::LetsGo { after } else { before };
-    let about = |rule: &&Steer| {
+    let about = |rule: &Steer| {
         rule.object.as_deref().is_none_or(|object| object == name)
             && rule.primitive.as_ref().is_none_or(|primitive| *primitive == step.primitive)
     };
-    let [x, y, _] = at.base;
-    for rule in rules.iter().filter(about) {
-        let refuse = |what: String| Err(site.refusal(0.0, RefusalKind::Steer, format!("`steer`: {what}")));
-        if rule.forbid {
-            return refuse(format!("{} of `{name}` is forbidden", step.primitive));
-        }
-        let beyond = |low: f64, high: f64, value: f64| (low - value).max(value - high);
-        let outside = |region: &crate::problem_file::Region| {
-            beyond(region.min[0], region.max[0], x).max(beyond(region.min[1], region.max[1], y))
-        };
-        if let Some(region) = rule.base.as_ref().filter(|region| outside(region) > ROUNDING) {
-            return refuse(format!(
-                "the base is at ({x:.3}, {y:.3}), it must be in {:?} to {:?}",
-                region.min, region.max
-            ));
-        }
-        if let Some(region) = rule.not_base.as_ref().filter(|region| outside(region) < -ROUNDING) {
-            return refuse(format!(
-                "the base is at ({x:.3}, {y:.3}), it must not be in {:?} to {:?}",
-                region.min, region.max
-            ));
-        }
-        let Some([from, to]) = rule.from_deg else { continue };
-        let hand = beside(robot, world, at, name);
-        let Some(hand) = hand.filter(|hand| hand.norm() > ABOVE_M) else { continue };
-        let degrees = hand.y.atan2(hand.x).to_degrees();
-        let past = (degrees - from + ROUNDING).rem_euclid(360.0);
-        if past > to - from + 2.0 * ROUNDING {
-            return refuse(format!(
-                "the hand is at `{name}` from {degrees:.1} degrees, it must be from {from} to {to}"
-            ));
+    for (index, rule) in rules.iter().enumerate().filter(|(_, rule)| about(rule)) {
+        let refuse = |what: String| Err(site.refusal(0.0, RefusalKind::Steer, format!("`steer[{index}]`: {what}")));
+        let fault = fault(rule, name, at, (world, robot));
+        match fault {
+            None if rule.require => drop(met.insert(index)),
+            None if rule.forbid => return refuse(format!("{} of `{name}` is forbidden{}", step.primitive, like(rule))),
+            Some(fault) if !rule.require && !rule.forbid => return refuse(fault),
+            _ => {}
         }
     }
     Ok(())
+}
+
+/// By step of the plan: which of the rules with `require` it fulfils, whether the plan is right or not.
+pub(super) fn met_by_step(plan: &PlanFile, facts: &RobotFacts) -> Result<Vec<BTreeSet<usize>>, Refusal> {
+    let (robot, world) = (Robot::new(facts)?, World::new(&plan.problem)?);
+    let read = |waypoint: &Waypoint| State::read(waypoint, &robot, &world).ok();
+    let mut before = read(&plan.start);
+    let mut all = Vec::new();
+    for (number, step) in (1..).zip(&plan.steps) {
+        let mut met = BTreeSet::new();
+        let after = step.waypoints.last().and_then(read);
+        let contract = plan.contracts.get(&step.primitive).copied();
+        if let (Some(contract), Some(before), Some(after)) = (contract, &before, &after) {
+            let site = Site { step: number, primitive: &step.primitive, contract };
+            for (index, rule) in plan.problem.steers.iter().enumerate().filter(|(_, rule)| rule.require) {
+                let mut fulfils = BTreeSet::new();
+                check(std::slice::from_ref(rule), site, step, (&world, &robot), (before, after), &mut fulfils)?;
+                met.extend(fulfils.into_iter().map(|_| index));
+            }
+        }
+        all.push(met);
+        before = after;
+    }
+    Ok(all)
+}
+
+/// Checks that every rule with `require` has been fulfilled.
+pub(super) fn check_whole(rules: &[Steer], met: &BTreeSet<usize>) -> Result<(), Refusal> {
+    let missing = rules.iter().enumerate().find(|(index, rule)| rule.require && !met.contains(index));
+    let Some((index, rule)) = missing else { return Ok(()) };
+    let primitive =
+        rule.primitive.as_ref().map_or_else(|| "that takes, sets down or pushes".to_owned(), |p| format!("{p} of"));
+    let object = rule.object.as_ref().map_or_else(|| "an object".to_owned(), |object| format!("`{object}`"));
+    let text = format!("`steer[{index}]` requires a step {primitive} {object}{}, and there is none", like(rule));
+    Err(Refusal::whole(RefusalKind::Steer, text))
+}
+
+/// What more a rule says, in words.
+fn like(rule: &Steer) -> String {
+    let region = |region: &Region| format!("{:?} to {:?}", region.min, region.max);
+    let parts = [
+        rule.surface.as_ref().map(|name| format!("on `{name}`")),
+        rule.from_deg.map(|[from, to]| format!("from {from} to {to} degrees")),
+        rule.base.as_ref().map(|base| format!("with the base in {}", region(base))),
+        rule.not_base.as_ref().map(|base| format!("with the base not in {}", region(base))),
+    ];
+    let mut words = String::new();
+    for part in parts.into_iter().flatten() {
+        words.push(' ');
+        words.push_str(&part);
+    }
+    words
+}
+
+/// What of a rule's keys does not hold. What rounding may do counts for the plan: towards what is wanted, and away from what is
+/// forbidden.
+fn fault(rule: &Steer, name: &str, at: &State, (world, robot): (&World<'_>, &Robot)) -> Option<String> {
+    let slack = if rule.forbid { -1.0 } else { 1.0 };
+    let (rounding, above_m) = (slack * ROUNDING, ABOVE_M + slack * ABOVE_SLACK_M);
+    let [x, y, _] = at.base;
+    let beyond = |low: f64, high: f64, value: f64| (low - value).max(value - high);
+    let outside =
+        |region: &Region| beyond(region.min[0], region.max[0], x).max(beyond(region.min[1], region.max[1], y));
+    if let Some(region) = rule.base.as_ref().filter(|region| outside(region) > rounding) {
+        return Some(format!("the base is at ({x:.3}, {y:.3}), it must be in {:?} to {:?}", region.min, region.max));
+    }
+    if let Some(region) = rule.not_base.as_ref().filter(|region| outside(region) < -rounding) {
+        return Some(format!(
+            "the base is at ({x:.3}, {y:.3}), it must not be in {:?} to {:?}",
+            region.min, region.max
+        ));
+    }
+    if let Some(wanted) = &rule.surface {
+        let found = world.object(name).and_then(|index| Some((at.objects.get(index)?, world.movables.get(index)?)));
+        let Some(((pose, movable), top)) = found.zip(world.surface_called(wanted)) else {
+            return Some(format!("`{name}` or `{wanted}` is not there"));
+        };
+        let bottom = pose.translation.z - movable.depth_below_origin;
+        let centre = Point2::from(pose.translation.vector.xy());
+        let (above, inside) = (bottom - top.height(), top.depth(&centre));
+        if above.abs() > ON_TOP_M + rounding || inside < -rounding {
+            return Some(format!(
+                "`{name}` is not on `{wanted}`: {above:.4} m above it, {inside:.4} m inside its edge"
+            ));
+        }
+    }
+    let [from, to] = rule.from_deg?;
+    let hand = beside(robot, world, at, name).filter(|hand| hand.norm() > above_m)?;
+    let degrees = hand.y.atan2(hand.x).to_degrees();
+    let past = (degrees - from + rounding).rem_euclid(360.0);
+    (past > to - from + 2.0 * rounding)
+        .then(|| format!("the hand is at `{name}` from {degrees:.1} degrees, it must be from {from} to {to}"))
 }
 
 /// From the centre of the object to the wrist, seen from above.

@@ -85,6 +85,11 @@ impl<'a> World<'a> {
         self.movables.get(object).map_or("object", |movable| &movable.spec.name)
     }
 
+    /// The surface with this name.
+    pub(super) fn surface_called(&self, name: &str) -> Option<&SupportSurface> {
+        self.scene.surface(name)
+    }
+
     pub(super) fn surface(&self, index: usize) -> Option<&SupportSurface> {
         self.scene.surfaces().get(index)
     }

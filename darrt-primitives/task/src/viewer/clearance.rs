@@ -151,20 +151,46 @@ impl<'a> Scene<'a> {
     /// The nearest two, those that were nearest a moment ago first: they mostly are still.
     fn nearest(&self, before: Option<Pair>) -> Option<(Pair, Clearance)> {
         let mut best: Option<(Pair, Clearance)> = None;
-        let all = (0..self.movers.len()).flat_map(|mover| (0..self.others.len()).map(move |other| (mover, other)));
-        for (mover, other) in before.into_iter().chain(all) {
-            let (Some(a), Some(b)) = (self.movers.get(mover), self.others.get(other)) else { continue };
-            let least = best.as_ref().map_or(f64::INFINITY, |(_, clearance)| clearance.distance);
-            if a.bound(b) >= least || self.is_free((mover, other)) {
-                continue;
-            }
-            if let Ok(found) = between(a.body, &a.world_from_body, b.body, &b.world_from_body)
-                && found.distance < least
-            {
-                best = Some(((mover, other), found));
+        if let Some(pair) = before {
+            self.look(pair, &mut best);
+        }
+        // OPTIMIZATION: of many bodies in a large room few are nearer to any mover than that.
+        let least = best.as_ref().map_or(f64::INFINITY, |(_, clearance)| clearance.distance);
+        let (centre, radius) = self.around_movers();
+        let is_near = |other: &usize| {
+            let other = self.others.get(*other);
+            other.is_some_and(|other| (other.centre - centre).norm() - other.radius - radius < least)
+        };
+        let near: Vec<_> = (0..self.others.len()).filter(is_near).collect();
+        for mover in 0..self.movers.len() {
+            for other in &near {
+                self.look((mover, *other), &mut best);
             }
         }
         best
+    }
+
+    /// Keeps the pair if it is the nearest so far.
+    fn look(&self, (mover, other): Pair, best: &mut Option<(Pair, Clearance)>) {
+        let (Some(a), Some(b)) = (self.movers.get(mover), self.others.get(other)) else { return };
+        let least = best.as_ref().map_or(f64::INFINITY, |(_, clearance)| clearance.distance);
+        if a.bound(b) >= least || self.is_free((mover, other)) {
+            return;
+        }
+        if let Ok(found) = between(a.body, &a.world_from_body, b.body, &b.world_from_body)
+            && found.distance < least
+        {
+            *best = Some(((mover, other), found));
+        }
+    }
+
+    /// A ball around all movers; without end where one of them has none.
+    fn around_movers(&self) -> (Point3<f64>, f64) {
+        let count = self.movers.len().max(1) as f64;
+        let sum = self.movers.iter().fold(Vector3::zeros(), |sum, mover| sum + mover.centre.coords);
+        let centre = Point3::from(sum / count);
+        let reach = |mover: &Thing<'_>| (mover.centre - centre).norm() + mover.radius;
+        (centre, self.movers.iter().map(reach).fold(0.0, f64::max))
     }
 }
 

@@ -63,6 +63,11 @@ fingertip_clearance_m = 0.01
 position_error_m = 0.01
 edge_distance_m = [0.03, 0.08]
 [safety]
+robot_margin_m = 0.02
+held_margin_m = 0.02
+object_margin_m = 0.01
+least_margin_m = 0.005
+contact_margin_m = 0.002
 edge_margin_m = 0.03
 [sampling]
 object_share = 0.5
@@ -86,9 +91,19 @@ fn at<'a>(value: &'a mut toml::Value, key: &str) -> &'a mut toml::Value {
     })
 }
 
-/// The problem with a number in the place of another, or of all of a list.
+/// Margins of which none may be less than one before it.
+const MARGINS: [&str; 5] = ["contact_margin_m", "least_margin_m", "robot_margin_m", "held_margin_m", "object_margin_m"];
+
+/// The problem with a number in the place of another, or of all of a list. Where it is a margin, the others leave it all its room.
 fn with(key: &str, number: f64) -> toml::Value {
     let mut problem: toml::Value = toml::from_str(FULL).unwrap();
+    let place = key.strip_prefix("safety.").and_then(|key| MARGINS.iter().position(|other| *other == key));
+    if let Some(place) = place {
+        for (other, name) in MARGINS.iter().enumerate() {
+            let margin = if other < place.min(2) { LEAST_MARGIN } else { 0.5 };
+            *at(&mut problem, &format!("safety.{name}")) = toml::Value::Float(margin);
+        }
+    }
     let slot = at(&mut problem, key);
     let written = |old: &toml::Value| match old {
         #[expect(clippy::cast_possible_truncation, reason = "the test gives whole numbers where these belong")]

@@ -2,6 +2,7 @@
 
 use darrt_primitives::contact::MAX_LEAN;
 
+use super::names::surface;
 use super::numbers::{LONGEST_MOTION, length, motion, ordered, positive, within};
 use super::objects::WIDEST_GAP;
 use crate::problem_file::error::{Flaw, Located};
@@ -66,9 +67,16 @@ fn check_steers(problem: &ProblemFile) -> Result<(), Located> {
                 ordered(&format!("{}: {letter} of min and max", key(name)), range)?;
             }
         }
-        let says = rule.forbid || rule.from_deg.is_some() || rule.base.is_some() || rule.not_base.is_some();
-        if !says {
-            let text = "says nothing: give `forbid`, `from_deg`, `base` or `not_base`".to_owned();
+        if let Some(name) = &rule.surface {
+            surface(problem, &key(".surface"), name)?;
+        }
+        if rule.forbid && rule.require {
+            let text = "has `forbid` and `require`; there is no step that both allow".to_owned();
+            return Err(Flaw::Inconsistent(text).at(key("")));
+        }
+        let has_where = rule.base.is_some() || rule.not_base.is_some() || rule.surface.is_some();
+        if !(rule.forbid || rule.require || rule.from_deg.is_some() || has_where) {
+            let text = "says nothing: give `forbid`, `require`, `from_deg`, `surface`, `base` or `not_base`".to_owned();
             return Err(Flaw::Inconsistent(text).at(key("")));
         }
     }
