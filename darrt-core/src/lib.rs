@@ -65,6 +65,10 @@
 //! | (for comparisons) what is no better | [`variants`] |
 //!
 //! A result is a [`verify::Solution`], and only the independent verifier can make one.
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `testing` | `testing`: a planar toy domain, implementations that break the laws, proptest strategies |
 
 pub mod budget;
 pub mod cost;

@@ -11,7 +11,7 @@ use crate::shorten::joined;
 
 impl<D: Domain> Roadmap<'_, D> {
     /// The manipulations of a chain of which it may pay to make two, each between the one before and the one after it.
-    pub(super) fn costly_arrivals(&self, chain: &[Id]) -> Vec<[Id; 3]> {
+    fn costly_arrivals(&self, chain: &[Id]) -> Vec<[Id; 3]> {
         let triples = chain.iter().zip(chain.iter().skip(1)).zip(chain.iter().skip(2)).map(|((a, b), c)| [*a, *b, *c]);
         triples.filter(|[_, at, next]| self.may_pay(*at, *next)).collect()
     }
@@ -25,8 +25,9 @@ impl<D: Domain> Roadmap<'_, D> {
         })
     }
 
-    /// Tries to make two of one of these manipulations.
-    pub(super) fn stop_over(&mut self, costly: &[[Id; 3]], rng: &mut dyn Rng) -> Option<()> {
+    /// Tries to make two of one of the manipulations of a chain.
+    pub(super) fn stop_over(&mut self, chain: &[Id], rng: &mut dyn Rng) -> Option<()> {
+        let costly = self.costly_arrivals(chain);
         if costly.is_empty() {
             return None;
         }

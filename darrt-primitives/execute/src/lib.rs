@@ -15,12 +15,19 @@
 //! version = 1
 //! name = "puck"
 //! primitives = ["Arm-Transit", "Straight-Line-Arm-Transit", "Push"]
+//! transit.postures = ["ready", "left", "right"]
 //! robot = { model = "planar-arm", base = [0.0, 0.0, 0.0] }
 //! bounds = { base_x = [-1, 1], base_y = [-1, 1], object_x = [0, 1.2], object_y = [-0.8, 0.8], object_z = [0, 1.2] }
 //! obstacle = [{ name = "table top", shape = { box = { size = [0.75, 1.2, 0.04] } }, at = [0.5, 0.0, 0.73] }]
 //! surface = [{ name = "table", top_of = "table top" }]
-//! object = [{ name = "puck", shape = { cylinder = { radius = 0.06, height = 0.05 } }, on = "table", at = [0.48, 0.22] }]
 //! goal.object = [{ object = "puck", on = "table", at = [0.48, -0.25], tolerance_m = 0.01, state = "released" }]
+//! [[object]]
+//! name = "puck"
+//! shape = { cylinder = { radius = 0.06, height = 0.05 } }
+//! symmetry = "z"
+//! on = "table"
+//! at = [0.48, 0.22]
+//! pushable = true
 //! "#;
 //! let problem = ProblemFile::from_toml(text, "puck.toml")?;
 //! let robots = Registry::<FileRobot>::new();
