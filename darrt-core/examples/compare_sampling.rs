@@ -7,7 +7,6 @@
 use darrt_core::budget::Budget;
 use darrt_core::distance::GreedyVisit;
 use darrt_core::error::Error;
-use darrt_core::extend::ExtendOptions;
 use darrt_core::observe::Silent;
 use darrt_core::problem::Problem;
 use darrt_core::sample::{Full, GoalBiased, RandomSubset, RobotOrObjects, Sampler};
@@ -23,15 +22,7 @@ fn main() -> Result<(), Error> {
     for (name, make) in problems::ALL {
         let problem = make()?;
         for sampling in ["full", "random subset", "robot or objects"] {
-            let strategy = Strategy {
-                sampler: Box::new(GoalBiased::new(sampler(sampling)?, 0.2)?),
-                distance: Box::new(GreedyVisit),
-                extend: ExtendOptions::default(),
-                local_repair: None,
-                try_penalty_m: 0.0,
-                shorten: darrt_core::shorten::ShortenOptions::default(),
-                improve: None,
-            };
+            let strategy = Strategy::new(GoalBiased::new(sampler(sampling)?, 0.2)?, GreedyVisit);
             let mut needed: Vec<u64> = (0..seeds).filter_map(|seed| iterations(&problem, &strategy, seed)).collect();
             needed.sort_unstable();
             let number = |n: Option<&u64>| n.map_or("-".to_owned(), u64::to_string);

@@ -1,6 +1,53 @@
 //! DARRT, the Diverse Action Rapidly Exploring Random Tree: planning with several types of action for a
 //! robot and movable objects, generic over all of them.
 //!
+//! A cart on a rail that is to shove a crate to 8 m, with a primitive of its own:
+//! ```
+//! use darrt_core::{distance::*, goal::Reach, motion::Waypoints, prelude::*, problem::*, sample::*, search::*};
+//! use darrt_core::{observe::Silent, solve::*, space::RealBox, validity::AlwaysValid, verify::Replay};
+//!
+//! struct Rail(RealBox<1>, [RealBox<1>; 1]); // where the cart may be, and where the crate
+//! impl Domain for Rail {
+//!     type Robot = RealBox<1>;
+//!     type Object = RealBox<1>;
+//!     type Mode = (); // nothing is ever held
+//!     type Contacts = ();
+//!     fn robot(&self) -> &RealBox<1> { &self.0 }
+//!     fn objects(&self) -> &[RealBox<1>] { &self.1 }
+//!     fn reach(&self, cart: &[f64; 1], _: ObjectId, at: &[f64; 1]) -> f64 { (at[0] - cart[0]).abs() }
+//!     fn travel_between(&self, a: (ObjectId, &[f64; 1]), b: (ObjectId, &[f64; 1])) -> f64 { (b.1[0] - a.1[0]).abs() }
+//! }
+//!
+//! struct Shove; // drives up to the crate from below, 1 m from its middle, and on
+//! impl Primitive<Rail> for Shove {
+//!     fn id(&self) -> PrimitiveId { PrimitiveId::new(0, "Shove") }
+//!     fn useful(&self, m: &Rail, from: &State<Rail>, to: &PartialState<Rail>) -> bool { !to.are_objects_met(m, from) }
+//!     fn propagate(&self, _: &Rail, from: &State<Rail>, to: &PartialState<Rail>, _: &mut dyn rand::Rng)
+//!         -> Result<Instances<Rail>, Infeasible> {
+//!         let (id, wanted) = to.objects().next().ok_or(Infeasible::NoProgress)?;
+//!         let (cart, at, end) = (from.robot[0], from.objects[0][0], wanted[0]);
+//!         if end <= at || cart > at - 1.0 { return Err(Infeasible::NoContact) }
+//!         let state = |x, y| State { robot: [x], objects: [[y]].into_iter().collect(), mode: () };
+//!         let states = vec![state(cart, at), state(at - 1.0, at), state(end - 1.0, end)];
+//!         let way = Waypoints::new(states, &[at - 1.0 - cart, end - at], ()).ok_or(Infeasible::NoProgress)?;
+//!         let (motion, moves) = (Box::new(way), ComponentSet::ROBOT.with(ComponentId::Object(id)));
+//!         let primitive = self.id();
+//!         Ok(vec![Instance { primitive, motion, contacts: (), moves, object: Some(id), reversible: false }])
+//!     }
+//! }
+//!
+//! let space = RealBox::new([0.0], [10.0])?;
+//! let domain = Rail(space.clone(), [space]);
+//! let goal = Box::new(Reach::new(PartialState::anywhere(&domain).with_object(ObjectId::new(0), [8.0])));
+//! let start = State { robot: [1.0], objects: [[4.0]].into_iter().collect(), mode: () };
+//! let (validity, verifier) = (Box::new(AlwaysValid), Box::new(Replay::new(AlwaysValid, 0.01)));
+//! let problem = Problem::new(Parts { domain, start, goal, primitives: vec![Box::new(Shove)], validity, verifier })?;
+//! let strategy = Strategy::new(GoalBiased::new(Full, 0.2)?, Euclidean);
+//! let plan = solve(&problem, &strategy, &SolveOptions::default(), &mut Silent).solution.ok_or("no plan")?;
+//! assert_eq!(plan.plan().end(problem.domain()).objects[0], [8.0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! Barry, Hsiao, Kaelbling, Lozano-Pérez, *Manipulation with Multiple Action Types*, ISER 2012 ("the
 //! paper" throughout).
 //!
@@ -18,6 +65,10 @@
 //! | (for comparisons) what is no better | [`variants`] |
 //!
 //! A result is a [`verify::Solution`], and only the independent verifier can make one.
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `testing` | `testing`: a planar toy domain, implementations that break the laws, proptest strategies |
 
 pub mod budget;
 pub mod cost;

@@ -58,6 +58,21 @@ pub struct Strategy<D: Domain> {
     pub improve: Option<Improvement<D>>,
 }
 
+impl<D: Domain> Strategy<D> {
+    /// Algorithm 1 with these: a blocked motion is cut short, and the plan stays as it was found.
+    pub fn new(sampler: impl Sampler<D> + 'static, distance: impl Distance<D> + 'static) -> Self {
+        Self {
+            sampler: Box::new(sampler),
+            distance: Box::new(distance),
+            extend: ExtendOptions::default(),
+            local_repair: None,
+            try_penalty_m: 0.0,
+            shorten: ShortenOptions::default(),
+            improve: None,
+        }
+    }
+}
+
 impl<D: Domain> std::fmt::Debug for Strategy<D> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Strategy").field("extend", &self.extend).finish_non_exhaustive()

@@ -31,6 +31,10 @@
 //! | what is asked for, and what is a goal? | [`target_query`], [`goal`] |
 //! | is my robot right? | [`laws`], and `testing` (feature `testing`) |
 //!
+//! | feature | what it adds |
+//! |---|---|
+//! | `testing` | `testing`: a gantry at two tables, implementations that break the laws, proptest strategies |
+//!
 //! Nothing here names a robot.
 
 pub mod action;

@@ -2,6 +2,7 @@
 
 use darrt_core::domain::Domain;
 use darrt_core::partial::PartialState;
+use darrt_core::primitive::Infeasible;
 use darrt_core::space::GroupSet;
 use darrt_core::state::ObjectId;
 use nalgebra::{Isometry3, Point2, Vector3};
@@ -50,11 +51,13 @@ pub fn random_unmet_object<'a, M: Manipulator>(
     test: impl Fn(ObjectId, &Isometry3<f64>) -> bool + Copy + 'a,
     rng: &mut dyn Rng,
 ) -> Option<(ObjectId, &'a Isometry3<f64>)> {
-    let count = unmet_objects(m, from, to, test).count();
-    if count == 0 {
-        return None;
-    }
-    unmet_objects(m, from, to, test).nth(rng.random_range(0..count))
+    one_of(|| unmet_objects(m, from, to, test), rng)
+}
+
+/// One of what `all` names, at random.
+fn one_of<T, I: Iterator<Item = T>>(all: impl Fn() -> I, rng: &mut dyn Rng) -> Option<T> {
+    let count = all().count();
+    if count == 0 { None } else { all().nth(rng.random_range(0..count)) }
 }
 
 /// Does `object` rest, may it be pushed, and does the target ask for another place in the plane? To a place that is not on
@@ -72,6 +75,29 @@ pub fn asks_to_push<M: Manipulator>(
         (pose.translation.vector.xy() - target.translation.vector.xy()).norm() > OBJECT_TOLERANCE_M
     });
     movable.is_pushable && moves && helps()
+}
+
+/// The objects that an empty hand is asked to push, and where to; none if something is held.
+pub fn objects_to_push<'a, M: Manipulator>(
+    m: &'a Tabletop<M>,
+    from: &'a TabletopState<M>,
+    to: &'a Target<M>,
+) -> impl Iterator<Item = (ObjectId, &'a Isometry3<f64>)> + 'a {
+    let is_empty = from.mode.held().is_none();
+    unmet_objects(m, from, to, move |id, pose| is_empty && asks_to_push(m, from, id, pose))
+}
+
+/// One of those, at random.
+///
+/// # Errors
+/// [`Infeasible::NoProgress`] if there is none.
+pub fn object_to_push<'a, M: Manipulator>(
+    m: &'a Tabletop<M>,
+    from: &'a TabletopState<M>,
+    to: &'a Target<M>,
+    rng: &mut dyn Rng,
+) -> Result<(ObjectId, &'a Isometry3<f64>), Infeasible> {
+    one_of(|| objects_to_push(m, from, to), rng).ok_or(Infeasible::NoProgress)
 }
 
 /// Does `object` rest, and can it be grasped at all?

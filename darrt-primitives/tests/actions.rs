@@ -131,7 +131,7 @@ fn what_would_not_stay_at_the_fingers_or_is_too_heavy_is_not_pushed() {
         (|tin, _| tin.mass_kg = 0.0, Some(Infeasible::UnstablePush)),
     ];
     for (change, refusal) in changes {
-        let m = altered_table(Gantry::new().unwrap(), |objects, s| change(&mut objects[0].1, &mut s.push)).unwrap();
+        let m = altered_table(Gantry::new().unwrap(), |objects, s| change(&mut objects[0], &mut s.push)).unwrap();
         let from = start(&m);
         let mut target = pose(&from, object(0));
         target.translation.x += 0.1;
@@ -198,7 +198,7 @@ fn nothing_is_left_nearer_to_an_edge_than_it_may() {
         max: Point2::new(-0.89, 0.1),
         margin_m: 0.01,
     };
-    let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].1.brinks = vec![brink]).unwrap();
+    let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].brinks = vec![brink]).unwrap();
     let (from, here) = (lifted(&m, id), start(&m));
     let placed = first(|rng| place(&m, &from, &at(-0.89), rng));
     assert_at(&pose(&end(&m, &from, &placed), id), &at(-0.89), true);
@@ -243,7 +243,7 @@ fn lines_of_the_hand_fit_the_room() {
 #[test]
 fn only_what_may_be_pushed_is_pushed() {
     // The red tin is round, but it must not be pushed; the box is not round.
-    let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].1.is_pushable = false).unwrap();
+    let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].is_pushable = false).unwrap();
     let from = start(&m);
     for (id, may) in [(object(0), false), (object(1), true), (object(2), false)] {
         let mut target = pose(&from, id);
@@ -404,7 +404,7 @@ fn the_hand_goes_in_and_out_along_its_own_axis() {
 fn a_lift_may_end_where_the_arm_does_if_that_is_high_enough() {
     // The arm lifts a tin by less than 0.9 m.
     for (least, may) in [(0.7, true), (1.0, false)] {
-        let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].1.lift_m = [least, 2.0]).unwrap();
+        let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].lift_m = [least, 2.0]).unwrap();
         let from = start(&m);
         for seed in 0..8 {
             match pick(&m, &from, object(0), &mut stream(seed, 0, 0, Purpose::Extend)) {
@@ -421,8 +421,8 @@ fn a_lift_may_end_where_the_arm_does_if_that_is_high_enough() {
 /// The table whose red tin can be grasped in this way only.
 fn grasped_by(grasps: impl GraspFamily + 'static) -> Table {
     altered_table(Gantry::new().unwrap(), |objects, _| {
-        objects[0].1.grasps = vec![Box::new(grasps)];
-        objects[0].1.rim = RimReach { insertion: 0.02, clearance: 0.005, ..RimReach::default() };
+        objects[0].grasps = vec![Box::new(grasps)];
+        objects[0].rim = RimReach { insertion: 0.02, clearance: 0.005, ..RimReach::default() };
     })
     .unwrap()
 }
@@ -465,8 +465,8 @@ fn a_rim_is_gripped_only_where_it_sticks_out_over_the_edge() {
 #[test]
 fn what_no_grasp_holds_is_not_picked() {
     let table = |mass_kg, fingers| {
-        let change = |objects: &mut [(_, Movable)], _: &mut _| {
-            (objects[0].1.mass_kg, objects[0].1.friction.fingers) = (mass_kg, fingers);
+        let change = |objects: &mut [Movable], _: &mut _| {
+            (objects[0].mass_kg, objects[0].friction.fingers) = (mass_kg, fingers);
         };
         altered_table(Gantry::new().unwrap(), change).unwrap()
     };

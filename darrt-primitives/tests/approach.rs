@@ -127,7 +127,7 @@ fn there_is_no_way_to_what_can_be_neither_pushed_nor_grasped() {
         RimOptions { insertion: 0.02, ..RimOptions::default() },
     )
     .unwrap();
-    let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].1.grasps = vec![Box::new(rim)]).unwrap();
+    let m = altered_table(Gantry::new().unwrap(), |objects, _| objects[0].grasps = vec![Box::new(rim)]).unwrap();
     let mut here = start(&m);
     assert_eq!(to_grasp_m(&m, &here, object(0)), NO_WAY_M, "no rim sticks out in the middle of the table");
     here.objects[0] = target(&here, [-0.9, -0.3]);

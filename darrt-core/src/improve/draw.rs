@@ -16,9 +16,6 @@ use crate::shorten::joined;
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ObjectId, State};
 
-/// How many stopovers are tried for every other draw, where the cost asks for one.
-const STOPOVERS: usize = 6;
-
 /// What one draw makes of the hope for the next one between the same placements.
 const HOPE_LEFT: f64 = 0.6;
 /// How much less is hoped for where manipulations are to be left out: when the plan was made shorter that was tried.
@@ -50,14 +47,11 @@ pub(super) enum Hope {
 }
 
 impl<D: Domain> Roadmap<'_, D> {
-    /// The draw that promises most, and, where the cost asks for one, stopovers besides; `false` if there is none.
+    /// The draw that promises most, and, where the cost asks for one, a stopover besides; `false` if there is none.
     pub(super) fn draw(&mut self, hope: Hope, rng: &mut dyn Rng) -> bool {
         let Some(chain) = self.cheapest() else { return false };
         if hope == Hope::LessTime {
-            let costly = self.costly_arrivals(&chain);
-            for _ in 0..STOPOVERS {
-                self.stop_over(&costly, rng);
-            }
+            self.stop_over(&chain, rng);
         }
         let Some(draw) = self.most_promising(&chain, hope) else { return false };
         let Some(key) = self.key(&chain, draw) else { return false };

@@ -1,5 +1,46 @@
 //! Plans executed in physics before they are real, for any robot.
 //!
+//! A puck is pushed across a table, with a fifth of the errors of a real robot:
+//! ```
+//! use darrt_core::{budget::Cancel, observe::Silent};
+//! use darrt_execute::{Execution, Loop, NoiseModel, execute};
+//! use darrt_task::file_robot::FileRobot;
+//! use darrt_task::planning::{PlanRequest, plan};
+//! use darrt_task::problem_file::ProblemFile;
+//! use darrt_task::registry::Registry;
+//! use darrt_task::robot::TaskRobot as _;
+//!
+//! let text = r#"
+//! format = "darrt-problem"
+//! version = 1
+//! name = "puck"
+//! primitives = ["Arm-Transit", "Straight-Line-Arm-Transit", "Push"]
+//! transit.postures = ["ready", "left", "right"]
+//! robot = { model = "planar-arm", base = [0.0, 0.0, 0.0] }
+//! bounds = { base_x = [-1, 1], base_y = [-1, 1], object_x = [0, 1.2], object_y = [-0.8, 0.8], object_z = [0, 1.2] }
+//! obstacle = [{ name = "table top", shape = { box = { size = [0.75, 1.2, 0.04] } }, at = [0.5, 0.0, 0.73] }]
+//! surface = [{ name = "table", top_of = "table top" }]
+//! goal.object = [{ object = "puck", on = "table", at = [0.48, -0.25], tolerance_m = 0.01, state = "released" }]
+//! [[object]]
+//! name = "puck"
+//! shape = { cylinder = { radius = 0.06, height = 0.05 } }
+//! symmetry = "z"
+//! on = "table"
+//! at = [0.48, 0.22]
+//! pushable = true
+//! "#;
+//! let problem = ProblemFile::from_toml(text, "puck.toml")?;
+//! let robots = Registry::<FileRobot>::new();
+//! let found = plan(&robots, &PlanRequest::new(problem, 0), &Cancel::new(), &mut Silent)?.plan.ok_or("no plan")?;
+//!
+//! let facts = FileRobot::facts(&found.problem.robot)?;
+//! let (execution, noise) = (Execution::new(&found, &facts)?, NoiseModel::real()?.scaled(0.2));
+//! let expected = execution.predict(&noise, false);
+//! let runs = execute(&execution, &noise, Loop::Open, (0, 4), 1, &Cancel::new(), &|_| {});
+//! assert!(expected.within_5_cm > 0.95 && runs.near() == 4, "{:?}", runs.failures());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! | question | file |
 //! |---|---|
 //! | what is executed, and how did it go? | [`run`] |

@@ -8,7 +8,7 @@ use crate::action::approach::to_push_m;
 use crate::action::push::push;
 use crate::manipulator::Manipulator;
 use crate::tabletop::{Tabletop, TabletopState};
-use crate::target_query::{asks_to_push, random_unmet_object, unmet_objects};
+use crate::target_query::{object_to_push, objects_to_push};
 
 /// Push: the gripper touches the rim of a round object with two fingers and pushes it along the ray through its centre (paper section 5.1, figure 1).
 #[derive(Debug, Clone, Copy, Default)]
@@ -20,17 +20,12 @@ impl<M: Manipulator> Primitive<Tabletop<M>> for Push {
     }
 
     fn useful(&self, m: &Tabletop<M>, from: &TabletopState<M>, to: &PartialState<Tabletop<M>>) -> bool {
-        from.mode.held().is_none()
-            && unmet_objects(m, from, to, |id, pose| asks_to_push(m, from, id, pose)).next().is_some()
+        objects_to_push(m, from, to).next().is_some()
     }
 
     /// To the contact behind the nearest of the objects, wherever the push of one may end.
     fn approach(&self, m: &Tabletop<M>, from: &TabletopState<M>, to: &PartialState<Tabletop<M>>) -> Option<f64> {
-        if from.mode.held().is_some() {
-            return None;
-        }
-        let wanted = unmet_objects(m, from, to, |id, pose| asks_to_push(m, from, id, pose));
-        wanted.map(|(id, target)| to_push_m(m, from, id, target)).min_by(f64::total_cmp)
+        objects_to_push(m, from, to).map(|(id, target)| to_push_m(m, from, id, target)).min_by(f64::total_cmp)
     }
 
     fn propagate(
@@ -40,8 +35,7 @@ impl<M: Manipulator> Primitive<Tabletop<M>> for Push {
         to: &PartialState<Tabletop<M>>,
         rng: &mut dyn Rng,
     ) -> Result<Instances<Tabletop<M>>, Infeasible> {
-        let wanted = random_unmet_object(m, from, to, |id, pose: &_| asks_to_push(m, from, id, pose), rng);
-        let (object, target) = wanted.ok_or(Infeasible::NoProgress)?;
+        let (object, target) = object_to_push(m, from, to, rng)?;
         push(m, from, object, target, rng)
     }
 }

@@ -144,16 +144,20 @@ impl<M: Manipulator> TabletopBuilder<M> {
         self
     }
 
-    /// Something that does not move.
+    /// Something of one shape that does not move.
     #[must_use]
-    pub fn obstacle(mut self, name: &str, shape: Shape, world_from_body: Isometry3<f64>) -> Self {
+    pub fn obstacle(self, name: &str, shape: Shape, world_from_body: Isometry3<f64>) -> Self {
         match Body::single(name, shape) {
-            Ok(body) => {
-                self.fixed.push(FixedBody { body, world_from_body });
-                self
-            }
+            Ok(body) => self.fixed(FixedBody { body, world_from_body }),
             Err(error) => self.failed(error),
         }
+    }
+
+    /// Something of any number of shapes that does not move.
+    #[must_use]
+    pub fn fixed(mut self, body: FixedBody) -> Self {
+        self.fixed.push(body);
+        self
     }
 
     /// An object that stands on a surface at the start; `at` is the place of its centre. It may stand on every surface that

@@ -1,11 +1,7 @@
 //! A gantry at two tables: two round tins that can be pushed and grasped from above, and a long box that can only be
 //! grasped.
 
-use std::sync::Arc;
-
-use darrt_core::error::Error;
 use darrt_core::state::{ObjectId, State};
-use darrt_geom::body::Body;
 use darrt_geom::scene::FixedBody;
 use darrt_geom::shape::Shape;
 use darrt_geom::support::SupportSurface;
@@ -13,18 +9,16 @@ use nalgebra::{Point2, Vector2, Vector3};
 
 use super::gantry::{Gantry, motion};
 use crate::error::PrimitiveError;
+use crate::grasp::Grip;
 use crate::grasp::footprint::Footprint;
 use crate::grasp::overhead::OverheadGrasps;
-use crate::grasp::{GraspFamily, Grip};
 use crate::length_range::LengthRange;
-use crate::manipulator::{Configuration, Manipulator};
-use crate::mobile_arm_space::MobileArmSpace;
+use crate::manipulator::Configuration;
 use crate::mode::{Mode, SurfaceId};
-use crate::object_space::{ObjectSpace, ObjectSpaceParts};
-use crate::push::edge_stop::{EdgeRule, RimReach};
+use crate::push::edge_stop::EdgeRule;
+use crate::tabletop::builder::{BuildError, TabletopBuilder};
 use crate::tabletop::{
-    ActionSettings, Movable, ObjectFriction, PlaceSettings, PushSettings, SafetySettings, Support, Tabletop,
-    TabletopState,
+    ActionSettings, Movable, ObjectFriction, PlaceSettings, PushSettings, SafetySettings, Tabletop, TabletopState,
 };
 
 /// The domain.
@@ -32,6 +26,8 @@ pub type Table = Tabletop<Gantry>;
 /// Its state.
 pub type TableState = TabletopState<Gantry>;
 
+/// The table on which everything stands at the start.
+const LEFT: &str = "left table";
 /// Height of both tables, metres.
 const HEIGHT_M: f64 = 0.7;
 /// Radius and height of a tin, metres.
@@ -43,19 +39,10 @@ const EDGE_MARGIN_M: f64 = 0.02;
 /// How far below the top the fingertips grasp, metres.
 const DEPTH_M: f64 = 0.03;
 
-/// Why there is no table: never for the constants of this file.
-#[derive(Debug, thiserror::Error)]
-pub enum TableError {
-    /// A space is refused.
-    #[error(transparent)]
-    Space(#[from] Error),
-    /// A shape is refused.
-    #[error(transparent)]
-    Shape(#[from] darrt_geom::error::GeomError),
-    /// A grasp is refused.
-    #[error(transparent)]
-    Grasp(#[from] PrimitiveError),
-}
+/// Where the objects stand at the start.
+const PLACES_M: [[f64; 2]; 3] = [[-0.6, -0.3], [-0.4, 0.3], [-0.5, 0.0]];
+/// How they are turned.
+const YAW_RAD: f64 = 0.3;
 
 /// One of the objects: 0 and 1 are tins, 2 is the box.
 pub fn object(index: usize) -> ObjectId {
@@ -65,8 +52,8 @@ pub fn object(index: usize) -> ObjectId {
 /// The tables with `robot` beside them.
 ///
 /// # Errors
-/// [`TableError`] for a robot whose limits, weights or links cannot be used.
-pub fn table(robot: Gantry) -> Result<Table, TableError> {
+/// [`BuildError`] for a robot whose limits, weights or links cannot be used.
+pub fn table(robot: Gantry) -> Result<Table, BuildError> {
     altered_table(robot, |_, _| ())
 }
 
@@ -76,8 +63,8 @@ pub fn table(robot: Gantry) -> Result<Table, TableError> {
 /// As [`table`].
 pub fn altered_table(
     robot: Gantry,
-    change: impl FnOnce(&mut [(ObjectSpace, Movable)], &mut ActionSettings<motion::Joints>),
-) -> Result<Table, TableError> {
+    change: impl FnOnce(&mut [Movable], &mut ActionSettings<motion::Joints>),
+) -> Result<Table, BuildError> {
     furnished_table(robot, &[], change)
 }
 
@@ -88,78 +75,55 @@ pub fn altered_table(
 pub fn furnished_table(
     robot: Gantry,
     fixed: &[FixedBody],
-    change: impl FnOnce(&mut [(ObjectSpace, Movable)], &mut ActionSettings<motion::Joints>),
-) -> Result<Table, TableError> {
-    let surface =
-        |name: &str, x| SupportSurface::rectangle(name, Point2::new(x, 0.0), Vector2::new(0.8, 1.2), 0.0, HEIGHT_M);
-    let surfaces = [surface("left table", -0.5)?, surface("right table", 0.5)?];
+    change: impl FnOnce(&mut [Movable], &mut ActionSettings<motion::Joints>),
+) -> Result<Table, BuildError> {
     let [radius, height] = TIN_M;
-    let tin = |name: &str| movable(name, Shape::cylinder(radius, 0.5 * height)?, Footprint::Disc { radius }, &surfaces);
+    let tin = |name: &str| movable(name, Shape::cylinder(radius, 0.5 * height)?, Footprint::Disc { radius });
     let [x, y, z] = BOX_M;
     let cuboid = Shape::cuboid(Vector3::new(x, y, z) / 2.0)?;
-    let footprint = Footprint::Box { size_x: x, size_y: y };
-    let mut objects = vec![tin("red tin")?, tin("blue tin")?, movable("box", cuboid, footprint, &surfaces)?];
-    let space = MobileArmSpace::new([-2.0; 2], [2.0; 2], robot.limits(), robot.joint_weights_m())?;
-    let supports = surfaces.iter().map(|surface| Support { surface: surface.clone(), bodies: Vec::new() });
+    let cuboid = movable("box", cuboid, Footprint::Box { size_x: x, size_y: y })?;
+    let mut objects = [tin("red tin")?, tin("blue tin")?, cuboid];
     let mut settings = settings()?;
     change(&mut objects, &mut settings);
-    Ok(Tabletop::new(Arc::new(robot), space, objects, supports.collect(), fixed, settings)?)
+    let mut world = TabletopBuilder::new(robot, waiting())
+        .base_within([-2.0; 2], [2.0; 2])
+        .objects_within([-1.5, -1.5, 0.0], [1.5, 1.5, 1.6])
+        .with_settings(|all| *all = settings);
+    for (name, x) in [(LEFT, -0.5), ("right table", 0.5)] {
+        let size = Vector2::new(0.8, 1.2);
+        world = world.support(SupportSurface::rectangle(name, Point2::new(x, 0.0), size, 0.0, HEIGHT_M)?, &[]);
+    }
+    world = fixed.iter().cloned().fold(world, TabletopBuilder::fixed);
+    for (movable, at) in objects.into_iter().zip(PLACES_M) {
+        world = world.object(movable, LEFT, at, YAW_RAD);
+    }
+    Ok(world.build()?.0)
 }
 
 /// The honest gantry at the tables.
 ///
 /// # Errors
 /// None that could happen.
-pub fn honest_table() -> Result<Table, TableError> {
+pub fn honest_table() -> Result<Table, BuildError> {
     table(Gantry::new()?)
 }
 
-fn movable(
-    name: &str,
-    shape: Shape,
-    footprint: Footprint,
-    surfaces: &[SupportSurface],
-) -> Result<(ObjectSpace, Movable), TableError> {
+fn movable(name: &str, shape: Shape, footprint: Footprint) -> Result<Movable, BuildError> {
     let (low, high) = shape.local_aabb();
-    let half_height_m = high.z;
-    let reach_m = (high - low).norm() / 2.0;
-    let round_radius_m = match footprint {
-        Footprint::Disc { radius } => Some(radius),
-        Footprint::Box { .. } => None,
-    };
-    let space = ObjectSpace::new(ObjectSpaceParts {
-        lower: [-1.5, -1.5, 0.0],
-        upper: [1.5, 1.5, 1.6],
-        is_round: round_radius_m.is_some(),
-        metres_per_rad: reach_m,
-        half_height_m,
-        surfaces: surfaces.to_vec(),
-        surface_share: 0.7,
-        edge_margin_m: EDGE_MARGIN_M,
-    })?;
     let grip = Grip {
         open_gap: 0.095,
         tip_ahead: super::gantry::TIP_BEYOND_TOOL_M,
         approach: LengthRange::new(0.05, 0.1)?,
         ..Grip::default()
     };
-    let grasps = OverheadGrasps::new(footprint, 2.0 * half_height_m, DEPTH_M, grip)?;
+    let grasps = OverheadGrasps::new(footprint, high.z - low.z, DEPTH_M, grip)?;
     let movable = Movable {
-        body: Body::single(name, shape)?,
-        round_radius_m,
-        half_height_m,
-        reach_m,
-        is_pushable: round_radius_m.is_some(),
-        surfaces: (0..surfaces.len()).map(SurfaceId::new).collect(),
-        grasps: vec![Box::new(grasps) as Box<dyn GraspFamily>],
-        rim: RimReach::default(),
         lift_m: [0.05, 0.15],
         mass_kg: 0.3,
         friction: ObjectFriction { table: 0.3, fingers: 0.5 },
-        max_tilt_rad: std::f64::consts::PI,
-        brinks: Vec::new(),
+        ..Movable::new(name, shape)?
     };
-    Ok((space, movable))
+    Ok(movable.grasped_by(grasps))
 }
 
 fn settings() -> Result<ActionSettings<motion::Joints>, PrimitiveError> {
@@ -192,17 +156,20 @@ fn settings() -> Result<ActionSettings<motion::Joints>, PrimitiveError> {
     })
 }
 
+fn waiting() -> Configuration<motion::Joints> {
+    Configuration { base: [-0.5, 0.0, 0.0], arm: motion::pointing_down(0.0, 0.0, 1.4, 0.0) }
+}
+
 /// Two tins and the box on the left table, the hand open above them.
 pub fn start(m: &Table) -> TableState {
-    let places = [[-0.6, -0.3], [-0.4, 0.3], [-0.5, 0.0]];
     let standing = |(i, [x, y]): (usize, [f64; 2])| {
         let surface = m.surface(SurfaceId::new(0))?;
         let space = darrt_core::domain::Domain::objects(m).get(i)?;
-        Some(space.standing(surface, &Point2::new(x, y), 0.3))
+        Some(space.standing(surface, &Point2::new(x, y), YAW_RAD))
     };
     State {
-        robot: Configuration { base: [-0.5, 0.0, 0.0], arm: motion::pointing_down(0.0, 0.0, 1.4, 0.0) },
-        objects: places.into_iter().enumerate().filter_map(standing).collect(),
+        robot: waiting(),
+        objects: PLACES_M.into_iter().enumerate().filter_map(standing).collect(),
         mode: Mode::resting([SurfaceId::new(0); 3], 0.08),
     }
 }

@@ -1,5 +1,49 @@
 //! Manipulation tasks as files, for any robot: a problem is read, planned from end to end, judged and drawn.
 //!
+//! An arm that does not lift, one of those that come with this crate, pushes a puck across a table:
+//! ```
+//! use darrt_core::{budget::Cancel, observe::Silent};
+//! use darrt_task::file_robot::FileRobot;
+//! use darrt_task::picture::{Extent, Story, draw};
+//! use darrt_task::plan_file::PlanFile;
+//! use darrt_task::planning::{PlanRequest, plan};
+//! use darrt_task::problem_file::ProblemFile;
+//! use darrt_task::registry::Registry;
+//! use darrt_task::robot::TaskRobot as _;
+//! use darrt_task::verify::{VerifyOptions, verify_for};
+//!
+//! let text = r#"
+//! format = "darrt-problem"
+//! version = 1
+//! name = "puck"
+//! primitives = ["Arm-Transit", "Straight-Line-Arm-Transit", "Push"]
+//! transit.postures = ["ready", "left", "right"]
+//! robot = { model = "planar-arm", base = [0.0, 0.0, 0.0] }
+//! bounds = { base_x = [-1, 1], base_y = [-1, 1], object_x = [0, 1.2], object_y = [-0.8, 0.8], object_z = [0, 1.2] }
+//! obstacle = [{ name = "table top", shape = { box = { size = [0.75, 1.2, 0.04] } }, at = [0.5, 0.0, 0.73] }]
+//! surface = [{ name = "table", top_of = "table top" }]
+//! goal.object = [{ object = "puck", on = "table", at = [0.48, -0.25], tolerance_m = 0.01, state = "released" }]
+//! [[object]]
+//! name = "puck"
+//! shape = { cylinder = { radius = 0.06, height = 0.05 } }
+//! symmetry = "z"
+//! on = "table"
+//! at = [0.48, 0.22]
+//! pushable = true
+//! "#;
+//! let problem = ProblemFile::from_toml(text, "puck.toml")?;
+//! let robots = Registry::<FileRobot>::new();
+//! let found = plan(&robots, &PlanRequest::new(problem, 0), &Cancel::new(), &mut Silent)?.plan.ok_or("no plan")?;
+//!
+//! // Written, read by somebody else, judged from the file alone, and drawn.
+//! let read = PlanFile::from_json(&found.to_json()?, "puck.plan.json")?;
+//! let proof = verify_for::<FileRobot>(&read, &VerifyOptions::default())?;
+//! assert!(read.steps.iter().any(|step| step.primitive.as_str() == "Push") && proof.steps == read.steps.len());
+//! let story = Story::of_plan(&read, &FileRobot::facts(&read.problem.robot)?)?;
+//! assert!(draw(&story, Extent::Whole).contains("Push"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! | question | file |
 //! |---|---|
 //! | what must a robot say of itself? | [`robot`]; one that comes as a file: [`robot_file`], [`file_robot`] |

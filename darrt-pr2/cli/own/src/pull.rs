@@ -2,11 +2,11 @@
 
 use darrt_core::prelude::*;
 use darrt_primitives::action::push::{hand_behind, straight_way};
-use darrt_primitives::action::slide::{SlidingWay, slide};
+use darrt_primitives::action::slide::slide;
 use darrt_primitives::contact::HandStance;
 use darrt_primitives::contract::{Contract, HandUse, HandWay, MovingPart, ObjectRule};
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
-use darrt_primitives::target_query::{asks_to_push, random_unmet_object, unmet_objects};
+use darrt_primitives::target_query::{object_to_push, objects_to_push};
 use darrt_task::registry::TaskPrimitive;
 use darrt_task::robot::TaskRobot;
 use rand::{Rng, RngExt};
@@ -51,8 +51,7 @@ impl<M: TaskRobot> Primitive<Tabletop<M>> for Pull {
     }
 
     fn useful(&self, m: &Tabletop<M>, from: &TabletopState<M>, to: &PartialState<Tabletop<M>>) -> bool {
-        from.mode.held().is_none()
-            && unmet_objects(m, from, to, |id, pose| asks_to_push(m, from, id, pose)).next().is_some()
+        objects_to_push(m, from, to).next().is_some()
     }
 
     fn propagate(
@@ -62,9 +61,8 @@ impl<M: TaskRobot> Primitive<Tabletop<M>> for Pull {
         to: &PartialState<Tabletop<M>>,
         rng: &mut dyn Rng,
     ) -> Result<Instances<Tabletop<M>>, Infeasible> {
-        let wanted = random_unmet_object(m, from, to, |id, pose: &_| asks_to_push(m, from, id, pose), rng);
-        let (object, target) = wanted.ok_or(Infeasible::NoProgress)?;
-        let way: SlidingWay = straight_way(m, from, object, target, rng)?;
+        let (object, target) = object_to_push(m, from, to, rng)?;
+        let way = straight_way(m, from, object, target, rng)?;
         let stance = HandStance { twin: rng.random_bool(0.5), ..HandStance::default() };
         let hand = hand_behind(m, from, (object, &way), &stance, self.id)?;
         let at = way.slide.from().translation.vector;

@@ -45,6 +45,14 @@ fn a_plan_with_a_primitive_of_ones_own_is_found_written_judged_and_drawn() {
     }
 }
 
+/// A primitive of one's own is short: without comments and empty lines it takes no more than this.
+#[test]
+fn pull_takes_sixty_lines() {
+    let lines = include_str!("../src/pull.rs").lines().map(str::trim);
+    let count = lines.filter(|line| !line.is_empty() && !line.starts_with("//")).count();
+    assert!(count <= 60, "{count}");
+}
+
 #[test]
 fn a_plan_that_pulls_without_touching_is_refused() {
     let mut found = planned(&PlanRequest::new(problem(), 0)).plan.unwrap();

@@ -133,6 +133,24 @@ fn a_part_of_a_step_takes_no_longer_than_the_whole() {
     }
 }
 
+/// Planned for success the robot pushes once more from where it grasps; else it drives between the two.
+#[test]
+fn planned_for_success_it_grasps_from_where_it_has_pushed() {
+    let of_hand = |cost: &'static str| {
+        let plans = (0..4).map(|seed| {
+            let request = PlanRequest::new(builtin("simple-plate").unwrap(), seed);
+            let plan = planned(&PlanRequest { cost: CostName::new(cost), ..request }).plan.unwrap();
+            verify(&plan).unwrap();
+            let names: Vec<_> = plan.steps.iter().map(|step| step.primitive.as_str().to_owned()).collect();
+            let pick = names.iter().position(|name| name == "Pick").unwrap();
+            let before = names.iter().take(pick).rev().find(|name| ["Push", "Base-Transit"].contains(&name.as_str()));
+            usize::from(before.is_some_and(|name| name == "Push"))
+        });
+        plans.sum::<usize>()
+    };
+    assert!(of_hand("success") > of_hand("execution-time"));
+}
+
 /// The robot goes where its goal says, by base, joints and tool, and the verifier holds it to that.
 #[test]
 fn the_robot_has_goals_too() {
