@@ -209,7 +209,9 @@ fn the_planner<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
         let iterations = ATTEMPT * world.subjects.effort.iterations;
         let shown = usize::try_from(world.subjects.effort.cases / INTO).unwrap_or(usize::MAX);
         let doubts = verifier::each_primitive::ways_and_doubts(&problem, &strategy, world.seed, iterations, shown)?;
-        doubts.into_iter().for_each(|doubt| row.warn(doubt));
+        for doubt in doubts {
+            row.warn(doubt);
+        }
         Ok(())
     };
     let laws = planner::LAWS.len() + verifier::LAWS.len();
