@@ -73,7 +73,7 @@ fn ties() -> Vec<Case> {
         case("ties that come and go", "a flag that is toggled when it is read", PURE, || {
             crane(|robot| {
                 robot.ties = || {
-                    let is_even = CALLS.fetch_add(1, Ordering::Relaxed) % 2 == 0;
+                    let is_even = CALLS.fetch_add(1, Ordering::Relaxed).is_multiple_of(2);
                     if is_even { crane::ties() } else { HandTies { up_in_tool: None, ..crane::ties() } }
                 };
             })

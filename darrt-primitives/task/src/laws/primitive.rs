@@ -62,7 +62,7 @@ mod tests {
     /// Wrong in one way, or in none.
     struct Wave<const WRONG: u8>(PrimitiveId);
 
-    #[derive(serde::Deserialize)]
+    #[derive(Clone, Copy, serde::Deserialize)]
     #[serde(deny_unknown_fields, default)]
     struct Strict {
         height_m: f64,
