@@ -9,7 +9,10 @@ use darrt_core::laws::everything::{Effort, Verdict};
 use darrt_core::laws::{Report, Subjects, check_everything, check_thoroughly, with_patience};
 use darrt_core::partial::PartialState;
 use darrt_core::prelude::*;
-use darrt_core::testing::puck::{Carry, Pick, Place, PuckWorld, Push, Transit, paper_strategy, problems};
+use darrt_core::testing::puck::{
+    Carry, Obstacle, Oracle, Outline, Pick, Place, PuckWorld, Push, Setup, Transit, paper_strategy, problems,
+};
+use darrt_core::verify::Replay;
 use rand::Rng;
 
 /// Fewer cases than by default: what is wrong here shows at once.
@@ -160,6 +163,25 @@ fn what_is_never_useful_is_warned_of_and_what_never_succeeds_is_broken() {
     assert!(found.to_string().contains(".only(\"Idle\", None)"), "{found}");
     let again = check(|all| all.primitives(primitives(Idle(true))).only("Idle", None)).unwrap_err();
     assert!(again.rows.len() == 1 && again.broken().any(|broken| broken.name() == "primitive.feasible"), "{again}");
+}
+
+/// Pucks may move by themselves in some domains: no fault, but worth a word where they never do.
+#[test]
+fn a_verifier_that_lets_pucks_move_by_themselves_is_warned_of() {
+    let setup = Setup::new([3.0, 3.0], 0.15).robot_at([0.6, 0.6]).puck("blue", 0.12, [1.2, 1.2]);
+    let setup = setup.pillar("pillar", [2.5, 0.5], 0.2).robot_goal([2.4, 2.4]).puck_goal(0, [1.2, 2.0]);
+    let problem = setup.problem().unwrap();
+    let warned = |verifier: Option<Replay<Oracle>>| {
+        let all = Subjects::of(&problem).strategy(paper_strategy().unwrap()).cases(32);
+        let all = all.only("planner and verifier", None);
+        let all = if let Some(verifier) = verifier { all.verifier(verifier) } else { all };
+        let report = check_everything(problem.shared_domain(), all).unwrap();
+        report.warnings().any(|(_, text)| text.contains("moves as in a step of Push, while the robot stood still"))
+    };
+    assert!(!warned(None), "the judge of the pucks");
+    let outline = Outline::Disc { centre: [2.5, 0.5], radius_m: 0.2 };
+    let oracle = Oracle::new(vec![Obstacle { name: "pillar".into(), outline }]);
+    assert!(warned(Some(Replay::new(oracle, 1e-3))), "one that looks at states alone");
 }
 
 #[test]

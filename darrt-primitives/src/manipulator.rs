@@ -151,10 +151,12 @@ pub trait Hand: Send + Sync {
 /// - No point of the robot moves farther than [`Manipulator::travel_m`] while base and arm move on the straight line
 ///   between two configurations, and no point of a link farther than [`Manipulator::link_travel_m`] says of it.
 /// - `link_poses` follows `world_from_tool`: hand links are rigid to the tool, finger links for a constant gap.
+/// - What `hand_ties` tells is so in every configuration, and it tells all that is. What `turn_to_reach` turns is reached.
 ///
 /// # Example
 /// A crane on wheels: three slides, and a hand that always points down.
 /// ```
+/// use darrt_primitives::hand_ties::HandTies;
 /// use darrt_primitives::kinematics::JointLimit;
 /// use darrt_primitives::manipulator::{Configuration, Hand, LinkGroup, Manipulator, RobotLink, world_from_base};
 /// # use darrt_geom::{body::Body, shape::Shape};
@@ -211,6 +213,9 @@ pub trait Hand: Send + Sync {
 ///         let farthest_m = 1.5 + held_reach_m; // of any point from the axis of the base: limits and fingers
 ///         let turn_rad = (b.base[2] - a.base[2] + 9.42477796076938).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
 ///         along(&a.base[..2], &b.base[..2]) + turn_rad.abs() * farthest_m + along(&a.arm, &b.arm)
+///     }
+///     fn hand_ties(&self) -> HandTies {
+///         HandTies { up_in_tool: Some(-Vector3::x_axis()), height_m: None } // it points down, and is lifted
 ///     }
 /// }
 ///

@@ -3,6 +3,7 @@
 
 pub mod arms;
 pub mod broken;
+pub mod crane;
 pub mod gantry;
 pub mod scene_oracle;
 pub mod strategies;

@@ -7,7 +7,7 @@ use rand::RngExt;
 use crate::domain::Domain;
 use crate::motion::Instance;
 use crate::partial::PartialState;
-use crate::primitive::{Infeasible, Instances, Primitive};
+use crate::primitive::{Infeasible, Instances, Primitive, PrimitiveId};
 use crate::random::{Purpose, stream};
 use crate::space::ComponentSpace;
 use crate::state::{ComponentId, ObjectId, State};
@@ -70,6 +70,9 @@ pub const FREE: &str = "primitive.free: of a hundred ways that it finds one at l
 /// Names.
 pub const NAME: &str = "primitive.name: a primitive has one name, which does not change";
 
+/// Ids.
+pub const IDS: &str = "primitive.ids: an instance that has the name or the index of a primitive has both";
+
 /// Holding.
 pub const HOLDS: &str = "primitive.holds: what is carried stays as far from the working point as it is, and what is moved otherwise stays as near to the hand";
 
@@ -82,6 +85,7 @@ pub const LAWS: &[&str] = &[
     FEASIBLE,
     FREE,
     NAME,
+    IDS,
     PANICS,
     ENDS,
     USEFUL_PURE,
@@ -218,6 +222,13 @@ struct Trial<'a, 'c, D: Domain> {
     claims: &'a PrimitiveClaims<'c, D>,
 }
 
+/// `found`, of an instance, is `id` as a whole or in nothing.
+pub(in crate::laws) fn is_whole(found: PrimitiveId, id: PrimitiveId) -> Result<(), Broken> {
+    let holds = (found.index() == id.index()) == (found.name() == id.name());
+    let text = |id: PrimitiveId| format!("{} with the index {}", id.name(), id.index());
+    if holds { Ok(()) } else { Err(Broken::new(IDS, text(found), text(id))) }
+}
+
 type Propagated<D> = Result<Instances<D>, Infeasible>;
 
 impl<D: Domain> Trial<'_, '_, D> {
@@ -334,6 +345,7 @@ impl<D: Domain> Trial<'_, '_, D> {
         let mut end = self.from.clone();
         for (i, instance) in instances.iter().enumerate() {
             let of = |broken: Broken| broken.of(format_args!("instance {i} {:?}", instance.primitive));
+            is_whole(instance.primitive, self.primitive.id()).map_err(of)?;
             equal(CHAINED, &instance.at(self.m, 0.0, self.from), &end).map_err(|broken| of(broken).at(0.0))?;
             check_instance(self.m, instance, &end, self.claims.ts, &self.claims.motion)
                 .map_err(|broken| Broken { replay: Box::default(), ..broken })?;

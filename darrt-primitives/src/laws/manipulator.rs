@@ -16,7 +16,9 @@ mod line;
 mod links;
 mod pairs;
 mod reaches;
+mod ties;
 mod travel;
+mod turn;
 mod vector;
 
 pub use reaches::{ReachClaims, check_reaches};
@@ -128,9 +130,22 @@ pub const NEAR_FINDS: &str =
 /// Joint vectors.
 pub const VECTOR: &str = "manipulator.vector: a joint vector has the values that it is made of or written to, zeros where zeros are asked for, no other number of them, and is equal to itself and to none that differs";
 
+/// What a hand is tied to.
+pub const TIES: &str = "manipulator.ties: where the hand gets to, it is tilted and as high as hand_ties says";
+/// All of it.
+pub const TIES_ALL: &str = "manipulator.ties-all: hand_ties tells a tilt and a height that no joint changes";
+/// Turns.
+pub const TURN: &str = "manipulator.turn: a pose turned by what turn_to_reach says is reached, in at least half of the cases, and what it says is an angle of a turn at most";
+/// Turns are of use.
+pub const TURN_FINDS: &str = "manipulator.turn-finds: for an arm of fewer than six joints that does not drive, enough of the poses that it reaches are reached or turned to reach, whichever way they are turned";
+
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
     VECTOR,
+    TIES,
+    TIES_ALL,
+    TURN,
+    TURN_FINDS,
     JOINTS,
     CENTRED,
     CLEAR,
@@ -223,16 +238,21 @@ pub fn check_manipulator<M: Manipulator>(
     let check = || {
         description::check(robot)?;
         let trial = Trial { robot, space: space_of(robot)?, a, b, gaps_m, seed, claims };
+        let told = trial.told();
+        trial.tells_the_same(&told)?;
         trial.links()?;
+        trial.ties()?;
         trial.hand()?;
         trial.pairs()?;
         trial.pairs_part()?;
         trial.inverse()?;
+        trial.turn()?;
         trial.line()?;
         trial.travel()?;
         trial.extremes()?;
         // Once more, after all the other questions.
-        trial.purity()
+        trial.purity()?;
+        trial.tells_the_same(&told)
     };
     watched(&about, check).map_err(|broken| broken.replayed_by(about))
 }

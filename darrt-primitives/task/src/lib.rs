@@ -46,7 +46,7 @@
 //!
 //! | question | file |
 //! |---|---|
-//! | what must a robot say of itself? | [`robot`]; one that comes as a file: [`robot_file`], [`file_robot`] |
+//! | what must a robot say of itself? | [`robot`], and its [`laws`]; one that comes as a file: [`robot_file`], [`file_robot`] |
 //! | which primitives, samplers, distances and problems are there? | [`registry`], and for command lines [`program`] |
 //! | what is a problem? | [`problem_file`], [`grasp_families`], [`goal_edges`] |
 //! | is it hopeless? | [`goal_feasibility`], [`goal_check`], `doubts` |
@@ -71,6 +71,7 @@ pub mod goal_check;
 pub mod goal_edges;
 pub mod goal_feasibility;
 pub mod grasp_families;
+pub mod laws;
 mod near_pairs;
 pub mod picture;
 pub mod plan_file;

@@ -17,6 +17,7 @@ use crate::robot_file::RobotFileError;
 /// A robot that problem files can be about.
 ///
 /// # Laws
+/// Run by [`check_task_robot`](crate::laws::check_task_robot).
 /// - The links of [`TaskRobot::facts`], moved by [`TaskRobot::joint_values`], stand where [`Manipulator::link_poses`] says.
 /// - [`RobotFacts::start`] holds of the configuration that [`TaskRobot::build`] returns.
 ///

@@ -36,7 +36,7 @@ fn the_laws_of_robots_hold() {
             assert!(checked.is_ok(), "{}: {}", shipped.name, checked.unwrap_err());
         }
         let configurations: Vec<_> = (0..200).map(|_| drawn(&robot, &mut rng)).collect();
-        let claims = ReachClaims { inverse: 0.98, base: 0.5 };
+        let claims = ReachClaims { inverse: 0.98, base: 0.5, ..ReachClaims::default() };
         check_reaches(&robot, &configurations, 1, &claims).unwrap();
     }
 }

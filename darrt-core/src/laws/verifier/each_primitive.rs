@@ -1,10 +1,14 @@
 //! Does a verifier accept what each primitive does?
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
-use super::{ACCEPTS, Broken};
+use super::forge::{Change, Forge, LEAST_M};
+use super::{ACCEPTS, Broken, Judged};
 use crate::domain::Domain;
 use crate::laws::ensure;
+use crate::laws::feed::components;
+use crate::laws::motion::component_travel;
 use crate::laws::planner::PATIENCE_FACTOR;
 use crate::laws::watch::{entering, patience_s, watched, with_patience};
 use crate::motion::Instance;
@@ -13,6 +17,7 @@ use crate::plan::Plan;
 use crate::primitive::PrimitiveId;
 use crate::problem::Problem;
 use crate::search::{Darrt, Strategy};
+use crate::state::{ComponentId, State};
 
 /// So many attempts are searched for ways.
 const ATTEMPTS: u64 = 2;
@@ -47,6 +52,8 @@ pub(super) struct Ledger {
     refused: Refusals,
     /// The same, at whichever step.
     earlier: Refusals,
+    /// By primitive: objects that moved by themselves, and nobody minded.
+    ghosts: BTreeMap<usize, String>,
 }
 
 impl Ledger {
@@ -69,6 +76,11 @@ impl Ledger {
         match problem.verifier().verify(m, problem.start(), &its_end(m, way), way) {
             Ok(_) => {
                 self.accepted.insert(id.index());
+                if let Some(object) = by_itself(problem, way) {
+                    let text =
+                        format!("accepted: {object} moves as in a step of {}, while the robot stood still", id.name());
+                    self.ghosts.insert(id.index(), text);
+                }
             }
             // A verifier may know its goal by itself.
             Err(refusal) => {
@@ -86,6 +98,11 @@ impl Ledger {
         }
     }
 
+    /// What is no fault in every domain: things may well move by themselves.
+    pub(in crate::laws) fn doubts(self) -> Vec<String> {
+        self.ghosts.into_values().collect()
+    }
+
     fn verdict(&self) -> Result<(), Broken> {
         // It may refuse what leads to such a step, always, as the touch before a push: that takes more ways.
         let last = (&self.refused, MANY, "ways refused at their last step");
@@ -98,6 +115,35 @@ impl Ledger {
         }
         Ok(())
     }
+}
+
+/// The object that the last step of an accepted way moves along with the robot, if the way is accepted as well with the robot where
+/// that step begins, all the way.
+fn by_itself<D: Domain>(problem: &Problem<D>, way: &Plan<D>) -> Option<String> {
+    let m = problem.domain();
+    let last = way.steps().len().checked_sub(1)?;
+    let (before, after) = (way.at(m, last, 0.0)?, way.at(m, last, 1.0)?);
+    let robot = State { robot: after.robot.clone(), ..before.clone() };
+    let objects = State { robot: before.robot.clone(), ..after.clone() };
+    if [&robot, &objects].iter().any(|one| component_travel(m, &before, one) <= LEAST_M) {
+        return None;
+    }
+    let moves = way.steps().get(last)?.instance.moves;
+    let object = components(m, moves).into_iter().find(|component| *component != ComponentId::Robot)?;
+    let goal = its_end(m, way);
+    let judged = Judged {
+        domain: m,
+        start: problem.start(),
+        goal: &goal,
+        validity: Some(problem.validity()),
+        verifier: problem.verifier(),
+    };
+    let stands = before.robot;
+    let change: Change<D> = Arc::new(move |_, _, state| state.robot.clone_from(&stands));
+    let ghost = Forge::new(&judged, way).changed(last, |length| length, change)?;
+    entering("verify");
+    let is_accepted = problem.verifier().verify(m, problem.start(), &its_end(m, &ghost), &ghost).is_ok();
+    is_accepted.then(|| m.component_name(object).into_owned())
 }
 
 /// The verifier of `problem` is shown ways that are free, as searches of so many `iterations` and the primitives find them: of
@@ -113,6 +159,17 @@ pub fn check_ways<D: Domain>(
     iterations: u64,
     most: usize,
 ) -> Result<(), Broken> {
+    ways_and_doubts(problem, strategy, seed, iterations, most).map(|_| ())
+}
+
+/// The same; also what else is worth knowing of the verifier.
+pub(in crate::laws) fn ways_and_doubts<D: Domain>(
+    problem: &Problem<D>,
+    strategy: &Strategy<D>,
+    seed: u64,
+    iterations: u64,
+    most: usize,
+) -> Result<Vec<String>, Broken> {
     let about = || format!("check_ways({problem:?}, {strategy:?}, {seed}, {iterations}, {most})");
     // One plan may be looked at for longer than a primitive may take.
     let patience_s = PATIENCE_FACTOR * patience_s();
@@ -126,7 +183,7 @@ fn run<D: Domain>(
     seed: u64,
     iterations: u64,
     most: usize,
-) -> Result<(), Broken> {
+) -> Result<Vec<String>, Broken> {
     let mut ledger = Ledger::default();
     for attempt in 0..ATTEMPTS {
         let mut search = Darrt::new(problem, strategy, seed, attempt, MOST_NODES);
@@ -148,5 +205,6 @@ fn run<D: Domain>(
             super::proposed::check(problem, search.tree(), &mut ledger, seed, most)?;
         }
     }
-    ledger.verdict()
+    ledger.verdict()?;
+    Ok(ledger.doubts())
 }

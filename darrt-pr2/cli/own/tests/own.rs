@@ -10,8 +10,9 @@ use darrt_core::observe::Silent;
 use darrt_core::testing::strategies::{config, looks, seen, tasks_from};
 use darrt_own::pull::{Pull, PullSettings};
 use darrt_pr2::robot::Pr2;
-use darrt_primitives::laws::{TabletopClaims, body_travel, check_finger_contacts, check_tabletop};
+use darrt_primitives::laws::{TabletopClaims, body_travel, check_contracts, check_finger_contacts, check_tabletop};
 use darrt_primitives::testing::strategies::resting;
+use darrt_task::laws::check_task_primitive;
 use darrt_task::picture::{Extent, Story, draw};
 use darrt_task::plan_file::PlanFile;
 use darrt_task::planning::{PlanRequest, PlanResult, plan, prepare};
@@ -70,6 +71,7 @@ fn pull_keeps_the_laws() {
     let m = prepared.domain();
     let (id, _) = registry.allowed(&problem()).find(|(id, _)| id.name() == "Pull").unwrap();
     let pull = <Pull as TaskPrimitive<Pr2>>::new(id, PullSettings::default()).unwrap();
+    check_task_primitive::<Pr2, Pull>().unwrap();
     // Along a line the hand may leave it by some millimetres between two knots, and turn by a few hundredths of a radian.
     let claims = TabletopClaims { knot: 1e-6, bow: 0.05, touch_m: 0.005, slack_m: 1e-7, looks: 16 };
     let succeeded = seen(5, || {
@@ -80,6 +82,7 @@ fn pull_keeps_the_laws() {
             if let Tried::Propagated(instances) = try_primitive(m, &pull, &from, &to, seed, &tried)? {
                 count.set(count.get() + 1);
                 check_tabletop(m, &instances, &from, &ts, &claims)?;
+                check_contracts(m, &[(id, <Pull as TaskPrimitive<Pr2>>::CONTRACT)], &instances, &from, &ts, &claims)?;
                 check_finger_contacts(m, prepared.validity(), &instances, &from, &ts)?;
             }
         });

@@ -4,7 +4,7 @@ use darrt_core::laws::watch::entering;
 use darrt_core::laws::{Broken, ensure};
 use darrt_core::random::{Purpose, stream};
 use darrt_core::space::ComponentSpace;
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point2, Quaternion, Translation3, UnitQuaternion, Vector3};
 use rand::RngExt;
 
 use super::{DURATION, MAY_NOT_REACH, NAN, TRAVEL_TIGHT, Trial, links::is_rigid};
@@ -46,6 +46,11 @@ impl<M: Manipulator> Trial<'_, M> {
             ensure(NAN, found.is_none(), || format!("{found:?}"), "no configuration")
                 .map_err(|broken| broken.of("inverse_near"))?;
         }
+        entering("turn_to_reach");
+        let centre = Point2::new(f64::NAN, 0.0);
+        let turn = self.robot.turn_to_reach(&self.a.base, &nowhere, &centre, &mut self.rng(0));
+        ensure(NAN, turn.is_none_or(f64::is_finite), || format!("{turn:?}"), "no turn, or some angle")
+            .map_err(|broken| broken.of("turn_to_reach"))?;
         entering("may_reach");
         let may = self.robot.may_reach(&self.a.base, &nowhere);
         ensure(NAN, !may, || "true".to_owned(), "false").map_err(|broken| broken.of("may_reach"))?;

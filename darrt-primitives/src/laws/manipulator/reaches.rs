@@ -3,7 +3,7 @@
 use darrt_core::laws::{Broken, at_most};
 use darrt_core::random::{Purpose, stream};
 
-use super::{BASE_FINDS, INVERSE_FINDS};
+use super::{BASE_FINDS, INVERSE_FINDS, TURN_FINDS, turn};
 use crate::manipulator::{Configuration, Manipulator};
 
 /// How often a robot claims to find something.
@@ -13,18 +13,21 @@ pub struct ReachClaims {
     pub inverse: f64,
     /// Share of the bases drawn for those poses from which `may_reach` is true.
     pub base: f64,
+    /// Share of those poses, turned any way about the vertical, that `inverse` reaches or `turn_to_reach` turns; asked of arms of
+    /// fewer than six joints that do not drive.
+    pub turned: f64,
 }
 
 impl Default for ReachClaims {
     fn default() -> Self {
-        Self { inverse: 0.9, base: 0.9 }
+        Self { inverse: 0.9, base: 0.9, turned: 0.5 }
     }
 }
 
-/// For the tool poses of `configurations`, all within the limits: how often inverse and base are found.
+/// For the tool poses of `configurations`, all within the limits: how often inverse, base and turn are found.
 ///
 /// # Errors
-/// [`INVERSE_FINDS`] or [`BASE_FINDS`] with both shares.
+/// [`INVERSE_FINDS`], [`BASE_FINDS`] or [`TURN_FINDS`] with both shares.
 pub fn check_reaches<M: Manipulator>(
     robot: &M,
     configurations: &[Configuration<M::Joints>],
@@ -42,7 +45,12 @@ pub fn check_reaches<M: Manipulator>(
     let share = |count: u32| f64::from(count) / configurations.len().max(1) as f64;
     // A share that is large enough is one whose rest is small enough.
     let check = |law, count, claimed: f64| at_most(law, 1.0 - share(count), 1.0 - claimed, 1e-9);
-    let all = check(INVERSE_FINDS, found, claims.inverse).and_then(|()| check(BASE_FINDS, reached, claims.base));
+    let all = check(INVERSE_FINDS, found, claims.inverse)
+        .and_then(|()| check(BASE_FINDS, reached, claims.base))
+        .and_then(|()| match turn::found(robot, configurations, seed) {
+            Some(found) => check(TURN_FINDS, found, claims.turned),
+            None => Ok(()),
+        });
     all.map_err(|broken| {
         let broken = broken.of("share of failures");
         broken.replayed_by(|| format!("check_reaches(&robot, {} configurations, {seed})", configurations.len()))

@@ -203,6 +203,7 @@ mod tests {
     use super::*;
     use crate::problem_file::Limits;
     use crate::robot_file::Source;
+    use darrt_primitives::laws::{ManipulatorClaims, ReachClaims, check_manipulator, check_reaches};
     use darrt_primitives::manipulator::{Configuration, Manipulator as _};
     use rand::SeedableRng as _;
     use rand_xoshiro::Xoshiro256PlusPlus;
@@ -253,6 +254,26 @@ mod tests {
                 found += 1;
             }
             assert!(found >= 190, "{found} of 200");
+        }
+    }
+
+    /// Among them those of ties and turns, which say little of an arm of six joints.
+    #[test]
+    fn they_keep_the_laws_of_robots() {
+        for robot in robots() {
+            let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);
+            let mut drawn = || {
+                let value = |limit: &JointLimit| rng.random_range(limit.lower..=limit.upper);
+                let values: Vec<_> = robot.limits.iter().map(value).collect();
+                Configuration { base: [0.3, -0.2, 0.7], arm: Joints::from_values(&values).unwrap() }
+            };
+            for seed in 0..4 {
+                let (a, b) = (drawn(), drawn());
+                check_manipulator(&robot, [&a, &b], [0.01, 0.03], seed, &ManipulatorClaims::default()).unwrap();
+            }
+            let all: Vec<_> = (0..40).map(|_| drawn()).collect();
+            let claims = ReachClaims { inverse: 0.5, base: 0.2, turned: 0.9 };
+            check_reaches(&robot, &all, 0, &claims).unwrap();
         }
     }
 

@@ -208,7 +208,7 @@ fn laws(robot: &FileRobot) -> Option<String> {
         }
         configurations.extend([a, b]);
     }
-    check_reaches(robot, &configurations, 0, &ReachClaims { inverse: 0.5, base: 0.2 })
+    check_reaches(robot, &configurations, 0, &ReachClaims { inverse: 0.5, base: 0.2, ..ReachClaims::default() })
         .err()
         .map(|broken| broken.to_string())
 }

@@ -25,8 +25,10 @@ const TS: [f64; 4] = [0.2, 0.5, 0.8, 0.95];
 const RETRIES: usize = 4;
 /// A primitive that found so many ways of which none was free finds none that is.
 const MOST_BLOCKED: u64 = 100;
-/// Of so many ways for each kind of what is to be done it is seen whether they are free.
+/// Of so many ways at most for each kind of what is to be done it is seen whether they are free.
 const MOST_WALKS: u64 = 300;
+/// And if none of so many is, that is worth a word.
+const ENOUGH_WALKS: u64 = 60;
 /// A primitive that was useful so often and never found a way finds none at all.
 const MOST_IN_VAIN: u64 = 1000;
 
@@ -77,6 +79,10 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
                 let is_known = |instance: &Instance<D>| {
                     subjects.primitives.iter().any(|primitive| primitive.id() == instance.primitive)
                 };
+                for instance in &instances {
+                    let ids = subjects.primitives.iter().map(|primitive| primitive.id());
+                    ids.into_iter().try_for_each(|id| primitive::is_whole(instance.primitive, id))?;
+                }
                 if !instances.iter().all(is_known) {
                     Tally::count(&counted.unknown);
                 }
@@ -138,7 +144,7 @@ fn verdict<D: Domain>(
     for (kind, [tried, kept]) in tally.walks.iter().enumerate() {
         let [tried, kept] = [tried, kept].map(Tally::get);
         (walked, free) = (walked + tried, free + kept);
-        if tried >= MOST_WALKS && kept == 0 {
+        if tried >= ENOUGH_WALKS && kept == 0 {
             row.warn(format!("blocked in {tried} of {tried} ways {}", open(kind)));
         }
     }

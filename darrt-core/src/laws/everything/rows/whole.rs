@@ -208,7 +208,11 @@ fn the_planner<D: Domain>(world: &World<D>) -> Option<Plan<D>> {
         }
         let iterations = ATTEMPT * world.subjects.effort.iterations;
         let shown = usize::try_from(world.subjects.effort.cases / INTO).unwrap_or(usize::MAX);
-        verifier::check_ways(&problem, &strategy, world.seed, iterations, shown)
+        let doubts = verifier::each_primitive::ways_and_doubts(&problem, &strategy, world.seed, iterations, shown)?;
+        for doubt in doubts {
+            row.warn(doubt);
+        }
+        Ok(())
     };
     let laws = planner::LAWS.len() + verifier::LAWS.len();
     let cases = (world.subjects.effort.cases / 32).max(1);

@@ -8,7 +8,7 @@ use super::super::bench::{Act, Bench, Propagate, Tag, cart, cart_at, robot_at, s
 use super::super::motions::{go, instance, random_state};
 use super::super::{Case, inputs, seed};
 use super::CASES;
-use crate::laws::primitive::{AT_HAND, HARM, MOVES, NAME, PANICS, PROGRESS, REVERSIBLE};
+use crate::laws::primitive::{AT_HAND, HARM, IDS, MOVES, NAME, PANICS, PROGRESS, REVERSIBLE};
 use crate::laws::{Broken, PrimitiveClaims, try_primitive};
 use crate::motion::{Instance, Waypoints};
 use crate::partial::PartialState;
@@ -206,6 +206,25 @@ fn answers() -> Vec<Case> {
     }
 
     vec![
+        case(
+            "an index that is another's",
+            "copied with the file: the name is right, and the number is not",
+            IDS,
+            || {
+                going(|m, from, to, rng| {
+                    let primitive = PrimitiveId::new(21, "Act");
+                    (GO.propagate)(m, from, to, rng)
+                        .map(|all| all.into_iter().map(|i| Instance { primitive, ..i }).collect())
+                })
+            },
+        ),
+        case("two of one index", "the next free number was taken", IDS, || {
+            going(|m, from, to, rng| {
+                let primitive = PrimitiveId::new(20, "Roll");
+                (GO.propagate)(m, from, to, rng)
+                    .map(|all| all.into_iter().map(|i| Instance { primitive, ..i }).collect())
+            })
+        }),
         case("another name each time", "the name tells the state of a counter", NAME, || check_that(&Nameless)),
         case("unwraps a comparison", "sorts by distance, and panics where there is none to compare", PANICS, || {
             check(Act {
