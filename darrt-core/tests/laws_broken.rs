@@ -2,6 +2,9 @@
 #![cfg(feature = "testing")]
 
 use std::collections::BTreeSet;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::{available_parallelism, scope};
 
 use darrt_core::laws;
 use darrt_core::testing::broken::{Case, cases};
@@ -12,7 +15,7 @@ const SEEDS: u64 = 20;
 const HONEST_SEEDS: u64 = 4;
 
 /// Why a case is not rejected as it should be, or its twin is.
-fn faults(case: &Case, twins: &mut BTreeSet<usize>) -> Vec<String> {
+fn faults(case: &Case, twins: &Mutex<BTreeSet<usize>>) -> Vec<String> {
     let mut faults = Vec::new();
     for seed in 0..SEEDS {
         match case.check_broken(seed) {
@@ -25,7 +28,8 @@ fn faults(case: &Case, twins: &mut BTreeSet<usize>) -> Vec<String> {
         break;
     }
     // Most cases of one kind have the same twin.
-    let seeds = if twins.insert(case.honest as usize) { HONEST_SEEDS } else { 0 };
+    let is_new = twins.lock().is_ok_and(|mut twins| twins.insert(case.honest as usize));
+    let seeds = if is_new { HONEST_SEEDS } else { 0 };
     for seed in 0..seeds {
         if let Err(broken) = case.check_honest(seed) {
             faults.push(format!("the honest twin of {} breaks with seed {seed}\n{broken}", case.name));
@@ -37,8 +41,16 @@ fn faults(case: &Case, twins: &mut BTreeSet<usize>) -> Vec<String> {
 
 #[test]
 fn every_broken_implementor_is_rejected_by_its_law_and_the_honest_twin_passes() {
-    let mut twins = BTreeSet::new();
-    let all: Vec<String> = cases().iter().flat_map(|case| faults(case, &mut twins)).collect();
+    let (cases, twins, next) = (cases(), Mutex::default(), AtomicUsize::new(0));
+    let work = || -> Vec<String> {
+        let taken = std::iter::from_fn(|| cases.get(next.fetch_add(1, Ordering::Relaxed)));
+        taken.flat_map(|case| faults(case, &twins)).collect()
+    };
+    let threads = available_parallelism().map_or(1, usize::from);
+    let all: Vec<String> = scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().flat_map(|worker| worker.join().unwrap()).collect()
+    });
     assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n\n"));
 }
 

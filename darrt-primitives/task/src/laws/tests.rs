@@ -61,7 +61,7 @@ const ALL: [Wrong; COUNT] = [
         BUILD,
         Fault { start: |start| nudged(start, CALLS.fetch_add(1, Ordering::Relaxed)), ..HONEST },
     ),
-    wrong("starts in degrees", BUILD, Fault { start: |start| mapped(start, |x| x.to_degrees()), ..HONEST }),
+    wrong("starts in degrees", BUILD, Fault { start: |start| mapped(start, f64::to_degrees), ..HONEST }),
     wrong("starts as NaN", BUILD, Fault { start: |start| mapped(start, |_| f64::NAN), ..HONEST }),
     wrong("a posture that it forgot", POSTURES, Fault { posture: |_, _| None, ..HONEST }),
     wrong(
