@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread::{available_parallelism, scope};
+use std::thread::{Builder, available_parallelism, scope};
 
 use darrt_core::laws;
 use darrt_core::testing::broken::{Case, cases};
@@ -48,7 +48,9 @@ fn every_broken_implementor_is_rejected_by_its_law_and_the_honest_twin_passes() 
     };
     let threads = available_parallelism().map_or(1, usize::from);
     let all: Vec<String> = scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        // Named like the threads of tests: some of the broken tell from this whether they run on threads of the planner.
+        let named = || Builder::new().name("cases".to_owned()).spawn_scoped(scope, work).unwrap();
+        let workers: Vec<_> = (0..threads).map(|_| named()).collect();
         workers.into_iter().flat_map(|worker| worker.join().unwrap()).collect()
     });
     assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n\n"));

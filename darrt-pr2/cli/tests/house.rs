@@ -71,6 +71,8 @@ fn no_decision_compares_the_name_of_a_primitive() {
             for (number, line) in (1..).zip(code.lines()) {
                 let is_name = line.contains("primitive.name()") || line.contains("primitive.as_str()");
                 let decides = line.contains("==") || line.contains("!=") || line.contains("match ");
+                // Examples in the documentation may: they ask for what they want.
+                let decides = decides && !line.trim_start().starts_with("//");
                 assert!(!(is_name && decides), "{}:{number}: {line}", path.display());
             }
         }
