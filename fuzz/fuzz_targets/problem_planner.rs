@@ -21,8 +21,9 @@ fuzz_target!(|data: &[u8]| {
     }
     let Ok(prepared) = prepare(&darrt_pr2::registry(), &file) else { return };
     let Ok(mut strategy) = strategy(&darrt_pr2::registry(), &PlanRequest::new(file.clone(), 0)) else { return };
-    // Hundreds of extensions more once a plan is found.
+    // Hundreds of extensions more once a plan is found, and further trees.
     strategy.shorten = ShortenOptions::default();
+    strategy.improve = None;
     let mut darrt = Darrt::new(&prepared.problem, &strategy, data.len() as u64, 0, 10_000);
     for _ in 0..ITERATIONS {
         let step = darrt.step();
