@@ -35,6 +35,11 @@ pub struct HandTies {
     pub height_m: Option<f64>,
 }
 
+/// Which way is up in the tool frame, a unit vector.
+pub fn up_in_tool(world_from_tool: &Isometry3<f64>) -> Vector3<f64> {
+    world_from_tool.rotation.inverse() * Vector3::z()
+}
+
 impl HandTies {
     /// May the hand be there, as far as its ties say?
     pub fn allow(&self, world_from_tool: &Isometry3<f64>) -> bool {
@@ -44,7 +49,7 @@ impl HandTies {
 
     /// The same of its tilt alone, wherever it is: also of a grasp, `object_from_tool`, of an object that stands upright.
     pub fn allow_tilt(&self, world_from_tool: &Isometry3<f64>) -> bool {
-        let up = world_from_tool.rotation.inverse() * Vector3::z();
+        let up = up_in_tool(world_from_tool);
         self.up_in_tool.is_none_or(|tied| (up - tied.into_inner()).norm() <= ROUNDING)
     }
 
@@ -83,7 +88,7 @@ mod tests {
             for twin in [false, true] {
                 let stance = HandStance { twin, lean };
                 let pose = contact.world_from_tool(&Point2::origin(), &direction, 0.7, &heights, &stance).unwrap();
-                let up_in_tool = Some(Unit::new_normalize(pose.rotation.inverse() * Vector3::z()));
+                let up_in_tool = Some(Unit::new_normalize(up_in_tool(&pose)));
                 let ties = HandTies { up_in_tool, height_m: Some(pose.translation.z) };
                 assert!(ties.allow(&pose));
                 let found = ties.pushing(twin).unwrap().unwrap();

@@ -213,20 +213,19 @@ impl<'a, D: Domain> Roadmap<'a, D> {
     fn add(&mut self, entry: State<D>, steps: Vec<Step<D>>, exit: State<D>, is_arrival: bool) -> Id {
         let (begins_on, ends_on) = (self.leaf_of(&entry), self.leaf_of(&exit));
         let id = self.known.len();
-        let guess = |to: Id, is_arrival: bool, from: &State<D>, (at, end): (&State<D>, &State<D>)| {
+        let guessed_s = |from: &State<D>, at: &State<D>, end: &State<D>| {
             let m = self.extender.problem.domain();
-            let seconds = if is_arrival {
-                // To arrive the robot need not go where it did on another plan.
-                0.0
-            } else {
-                self.any.ratio() * self.cost.between(m, from, at) + self.cost.arrival(m, from, at, end)
-            };
-            Link { to, way: Way::open(seconds, None), other: None }
+            self.any.ratio() * self.cost.between(m, from, at) + self.cost.arrival(m, from, at, end)
         };
+        let link = |to: Id, seconds: f64| Link { to, way: Way::open(seconds, None), other: None };
         let behind = self.known.iter().enumerate().skip(1).filter(|(_, next)| next.begins_on == ends_on);
-        let links = behind.map(|(to, next)| guess(to, next.is_arrival, &exit, (&next.entry, &next.exit))).collect();
+        let onward = behind.map(|(to, next)| {
+            // To arrive the robot need not go where it did on another plan.
+            link(to, if next.is_arrival { 0.0 } else { guessed_s(&exit, &next.entry, &next.exit) })
+        });
+        let links = onward.collect();
         let before = self.known.iter().enumerate().filter(|(_, last)| last.ends_on == begins_on && !last.is_arrival);
-        let to_it: Vec<_> = before.map(|(at, last)| (at, guess(id, false, &last.exit, (&entry, &exit)))).collect();
+        let to_it: Vec<_> = before.map(|(at, last)| (at, link(id, guessed_s(&last.exit, &entry, &exit)))).collect();
         for (at, link) in to_it {
             if let Some(last) = self.known.get_mut(at) {
                 last.links.push(link);
@@ -303,10 +302,9 @@ impl<'a, D: Domain> Roadmap<'a, D> {
     }
 
     /// By vertex: the seconds until its exit on the cheapest chain from the start over what is not blocked, and the vertex
-    /// before it. Infinite where there is none. What is only supposed counts the more, the less
-    /// often ways around were found: else one after the other is looked for, in vain, while a plan that is free waits.
+    /// before it. Infinite where there is none. What is only supposed counts the more, the less often ways around were found:
+    /// else one after the other is looked for, in vain, while a plan that is free waits.
     fn costs(&self) -> Vec<(f64, Id)> {
-        let may = |verdict: Verdict| verdict != Verdict::Blocked;
         let mut best = vec![(f64::INFINITY, START); self.known.len()];
         if let Some(start) = best.first_mut() {
             start.0 = 0.0;
@@ -318,8 +316,9 @@ impl<'a, D: Domain> Roadmap<'a, D> {
             }
             let Some(here) = self.known.get(id) else { continue };
             let here_chance = self.ways_around.chance(here.ends_on);
-            for link in here.links.iter().filter(|link| may(link.way.verdict)) {
-                let Some(next) = self.known.get(link.to).filter(|next| may(next.verdict)) else { continue };
+            for link in &here.links {
+                let next = self.known.get(link.to).filter(|next| next.verdict != Verdict::Blocked);
+                let Some(next) = next else { continue };
                 let through = seconds + link.way.counted_s(here_chance) + next.seconds;
                 if let Some(slot) = best.get_mut(link.to)
                     && through < slot.0

@@ -4,9 +4,9 @@
 //! The arm's joints are `[x, y]`, along the axes of the base. The hand is never turned: what looks alike from all sides has to be
 //! turned for it.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
-use darrt_core::space::so2::wrap;
+use darrt_core::space::so2;
 use darrt_geom::body::Body;
 use darrt_geom::error::GeomError;
 use darrt_geom::shape::Shape;
@@ -70,7 +70,7 @@ pub fn ties() -> HandTies {
 /// The turn that brings the fingers back into line with the base.
 pub fn turn(base: &[f64; 3], world_from_tool: &Isometry3<f64>, _: &Point2<f64>, _: &mut dyn Rng) -> Option<f64> {
     let opening = world_from_tool.rotation * Vector3::y();
-    Some(wrap(base[2] + FRAC_PI_2 - opening.y.atan2(opening.x)))
+    Some(so2::wrap(base[2] + FRAC_PI_2 - opening.y.atan2(opening.x)))
 }
 
 fn base_from_tool([x, y]: [f64; 2]) -> Isometry3<f64> {
@@ -148,8 +148,7 @@ impl Manipulator for Crane {
     fn travel_m(&self, a: &Configuration<[f64; 2]>, b: &Configuration<[f64; 2]>, held_reach_m: f64) -> f64 {
         let slide = (b.arm[0] - a.arm[0]).hypot(b.arm[1] - a.arm[1]);
         let drive = (b.base[0] - a.base[0]).hypot(b.base[1] - a.base[1]);
-        let turn_rad = (b.base[2] - a.base[2] + 3.0 * PI).rem_euclid(2.0 * PI) - PI;
-        slide + drive + turn_rad.abs() * (FARTHEST_M + held_reach_m)
+        slide + drive + so2::turn(a.base[2], b.base[2]).abs() * (FARTHEST_M + held_reach_m)
     }
 
     fn payload_kg(&self) -> f64 {

@@ -171,20 +171,30 @@ impl<M: TaskRobot> Trial<'_, M> {
 
 /// What of the facts can be compared.
 fn summary(facts: &RobotFacts) -> String {
-    let RobotFacts { description: _, meshes: _, motion: _, .. } = facts;
-    format!(
-        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
-        facts.arm_joints,
-        facts.finger_joint,
-        facts.tool_link,
-        facts.finger_links,
-        facts.tip_links,
-        facts.start,
-        facts.at_rest,
-        facts.self_pairs,
-        [facts.is_limited_softly, facts.is_bolted, facts.drives_along_heading],
-        [facts.pad_length_m, facts.grip_force_n, facts.payload_kg, facts.push_force_n],
-    )
+    // Named one by one, so that none that is new is forgotten.
+    let RobotFacts {
+        description: _,
+        meshes: _,
+        motion: _,
+        arm_joints,
+        finger_joint,
+        tool_link,
+        finger_links,
+        tip_links,
+        is_limited_softly,
+        start,
+        at_rest,
+        self_pairs,
+        is_bolted,
+        drives_along_heading,
+        pad_length_m,
+        grip_force_n,
+        payload_kg,
+        push_force_n,
+    } = facts;
+    let named = (arm_joints, finger_joint, tool_link, finger_links, tip_links, start, at_rest, self_pairs);
+    let switches = [is_limited_softly, is_bolted, drives_along_heading];
+    format!("{named:?} {switches:?} {:?}", [pad_length_m, grip_force_n, payload_kg, push_force_n])
 }
 
 fn models<M: TaskRobot>(problem: &ProblemFile) -> Result<(), Broken> {

@@ -3,9 +3,10 @@
 use darrt_core::laws::watch::entering;
 use darrt_core::laws::{Broken, ensure, equal};
 use darrt_core::space::ComponentSpace;
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::Isometry3;
 
 use super::{PURE, TIES, TIES_ALL, Trial};
+use crate::hand_ties::up_in_tool;
 use crate::manipulator::{Configuration, Manipulator};
 
 /// So many configurations are drawn to see what they have in common.
@@ -92,8 +93,4 @@ impl<M: Manipulator> Trial<'_, M> {
         }
         Ok(())
     }
-}
-
-fn up_in_tool(world_from_tool: &Isometry3<f64>) -> Vector3<f64> {
-    world_from_tool.rotation.inverse() * Vector3::z()
 }

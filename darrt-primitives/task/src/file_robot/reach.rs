@@ -8,6 +8,7 @@ use std::f64::consts::TAU;
 
 use darrt_core::random::{Purpose, stream};
 use darrt_core::space::so2::wrap;
+use darrt_primitives::hand_ties::up_in_tool;
 use darrt_primitives::kinematics::JointLimit;
 use nalgebra::{Isometry3, Vector3};
 use rand::{Rng, RngExt};
@@ -41,7 +42,7 @@ pub(super) struct Reach {
 
 /// Which way is up in the hand, as a part of the sphere.
 fn part(pose: &Isometry3<f64>) -> usize {
-    let up = pose.rotation.inverse() * Vector3::z();
+    let up = up_in_tool(pose);
     let index =
         |share: f64, count: usize| (0..count - 1).take_while(|i| (*i as f64 + 1.0) / count as f64 <= share).count();
     let along = index(f64::midpoint(up.x, 1.0), PARTS[0]);

@@ -1,6 +1,6 @@
 //! What the joints of an arm do not change of its hand.
 
-use darrt_primitives::hand_ties::HandTies;
+use darrt_primitives::hand_ties::{HandTies, up_in_tool};
 use nalgebra::{Unit, Vector3};
 
 use super::chain::ArmChain;
@@ -22,7 +22,7 @@ pub(super) fn ties(chain: &ArmChain) -> HandTies {
     let tool = chain.world_from_tool(&[0.0; 3], &at_zero);
     let is_level = axes().all(|(rise, joint)| !joint.slides || rise.abs() <= ROUNDING);
     HandTies {
-        up_in_tool: Some(Unit::new_normalize(tool.rotation.inverse() * Vector3::z())),
+        up_in_tool: Some(Unit::new_normalize(up_in_tool(&tool))),
         height_m: is_level.then_some(tool.translation.z),
     }
 }

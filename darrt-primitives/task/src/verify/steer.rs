@@ -11,7 +11,7 @@ use super::world::World;
 use crate::plan_file::{PlanFile, Step, Waypoint};
 use crate::problem_file::{Region, Steer};
 use crate::robot::RobotFacts;
-use darrt_primitives::contract::HandUse;
+use darrt_primitives::contract::{Contract, HandUse};
 
 /// A hand that is no farther beside the centre of an object is above it, metres,
 const ABOVE_M: f64 = 0.01;
@@ -34,13 +34,8 @@ pub(super) fn check(
     (before, after): (&State, &State),
     met: &mut BTreeSet<usize>,
 ) -> Result<(), Refusal> {
-    let Some(name) = step.object.as_deref().filter(|_| site.contract.manipulates()) else { return Ok(()) };
-    let at = if site.contract.hand == HandUse::LetsGo { after } else { before };
-    let about = |rule: &Steer| {
-        rule.object.as_deref().is_none_or(|object| object == name)
-            && rule.primitive.as_ref().is_none_or(|primitive| *primitive == step.primitive)
-    };
-    for (index, rule) in rules.iter().enumerate().filter(|(_, rule)| about(rule)) {
+    let Some((name, at)) = subject(site.contract, step, (before, after)) else { return Ok(()) };
+    for (index, rule) in rules.iter().enumerate().filter(|(_, rule)| is_about(rule, name, step)) {
         let refuse = |what: String| Err(site.refusal(0.0, RefusalKind::Steer, format!("`steer[{index}]`: {what}")));
         let fault = fault(rule, name, at, (world, robot));
         match fault {
@@ -53,25 +48,38 @@ pub(super) fn check(
     Ok(())
 }
 
+/// The object that a step does something with, and where everything stands when that is judged.
+fn subject<'a>(
+    contract: Contract,
+    step: &'a Step,
+    (before, after): (&'a State, &'a State),
+) -> Option<(&'a str, &'a State)> {
+    let name = step.object.as_deref().filter(|_| contract.manipulates())?;
+    Some((name, if contract.hand == HandUse::LetsGo { after } else { before }))
+}
+
+fn is_about(rule: &Steer, name: &str, step: &Step) -> bool {
+    rule.object.as_deref().is_none_or(|object| object == name)
+        && rule.primitive.as_ref().is_none_or(|primitive| *primitive == step.primitive)
+}
+
 /// By step of the plan: which of the rules with `require` it fulfils, whether the plan is right or not.
 pub(super) fn met_by_step(plan: &PlanFile, facts: &RobotFacts) -> Result<Vec<BTreeSet<usize>>, Refusal> {
     let (robot, world) = (Robot::new(facts)?, World::new(&plan.problem)?);
     let read = |waypoint: &Waypoint| State::read(waypoint, &robot, &world).ok();
     let mut before = read(&plan.start);
     let mut all = Vec::new();
-    for (number, step) in (1..).zip(&plan.steps) {
-        let mut met = BTreeSet::new();
+    for step in &plan.steps {
         let after = step.waypoints.last().and_then(read);
         let contract = plan.contracts.get(&step.primitive).copied();
-        if let (Some(contract), Some(before), Some(after)) = (contract, &before, &after) {
-            let site = Site { step: number, primitive: &step.primitive, contract };
-            for (index, rule) in plan.problem.steers.iter().enumerate().filter(|(_, rule)| rule.require) {
-                let mut fulfils = BTreeSet::new();
-                check(std::slice::from_ref(rule), site, step, (&world, &robot), (before, after), &mut fulfils)?;
-                met.extend(fulfils.into_iter().map(|_| index));
-            }
-        }
-        all.push(met);
+        let judged = contract.zip(before.as_ref().zip(after.as_ref()));
+        let subject = judged.and_then(|(contract, states)| subject(contract, step, states));
+        let is_met = |rule: &Steer, (name, at): (&str, &State)| {
+            rule.require && is_about(rule, name, step) && fault(rule, name, at, (&world, &robot)).is_none()
+        };
+        let rules = plan.problem.steers.iter().enumerate();
+        let met = rules.filter(|(_, rule)| subject.is_some_and(|subject| is_met(rule, subject)));
+        all.push(met.map(|(index, _)| index).collect());
         before = after;
     }
     Ok(all)

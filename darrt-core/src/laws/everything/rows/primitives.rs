@@ -80,8 +80,8 @@ fn plan<D: Domain>(world: &World<D>, index: usize) -> Option<Plan<D>> {
                     subjects.primitives.iter().any(|primitive| primitive.id() == instance.primitive)
                 };
                 for instance in &instances {
-                    let ids = subjects.primitives.iter().map(|primitive| primitive.id());
-                    ids.into_iter().try_for_each(|id| primitive::is_whole(instance.primitive, id))?;
+                    let mut all = subjects.primitives.iter();
+                    all.try_for_each(|one| primitive::is_whole(instance.primitive, one.id()))?;
                 }
                 if !instances.iter().all(is_known) {
                     Tally::count(&counted.unknown);
