@@ -22,7 +22,7 @@ impl<J: JointVector> Configurations<J> {
     pub(crate) fn new(start: Configuration<J>, rest: impl ExactSizeIterator<Item = Configuration<J>> + Clone) -> Self {
         let rest = if rest.clone().all(|q| is_same(&q.base, &start.base)) {
             Rest::Arms(rest.map(|q| q.arm).collect())
-        } else if rest.clone().all(|q| is_same(q.arm.as_ref(), start.arm.as_ref())) {
+        } else if rest.clone().all(|q| is_same_arm(&q.arm, &start.arm)) {
             Rest::Bases(rest.map(|q| q.base).collect())
         } else {
             Rest::Both(rest.collect())
@@ -54,6 +54,10 @@ impl<J: JointVector> Configurations<J> {
             Rest::Both(robots) => robots.get(after).copied(),
         }
     }
+}
+
+fn is_same_arm<J: JointVector>(a: &J, b: &J) -> bool {
+    a.hand_at_work() == b.hand_at_work() && is_same(a.as_ref(), b.as_ref())
 }
 
 /// Bit for bit, so that what is read is what was written: for `==` the zeros are one.

@@ -12,18 +12,19 @@ pub const MAX_JOINTS: usize = 16;
 #[derive(Clone, Copy, PartialEq)]
 pub struct Joints {
     values: [f64; MAX_JOINTS],
-    count: usize,
+    count: u32,
+    hand: u32,
 }
 
 impl AsRef<[f64]> for Joints {
     fn as_ref(&self) -> &[f64] {
-        self.values.get(..self.count).unwrap_or(&self.values)
+        self.values.get(..self.count as usize).unwrap_or(&self.values)
     }
 }
 
 impl AsMut<[f64]> for Joints {
     fn as_mut(&mut self) -> &mut [f64] {
-        let count = self.count.min(MAX_JOINTS);
+        let count = (self.count as usize).min(MAX_JOINTS);
         &mut self.values[..count]
     }
 }
@@ -42,7 +43,16 @@ impl JointVector for Joints {
     }
 
     fn zeros(count: usize) -> Option<Self> {
-        (count <= MAX_JOINTS).then_some(Self { values: [0.0; MAX_JOINTS], count })
+        let count = u32::try_from(count).ok().filter(|count| *count as usize <= MAX_JOINTS)?;
+        Some(Self { values: [0.0; MAX_JOINTS], count, hand: 0 })
+    }
+
+    fn hand_at_work(&self) -> usize {
+        self.hand as usize
+    }
+
+    fn with_hand_at_work(self, hand: usize) -> Self {
+        Self { hand: u32::try_from(hand).unwrap_or(u32::MAX), ..self }
     }
 }
 

@@ -49,6 +49,18 @@ pub trait JointVector: AsRef<[f64]> + AsMut<[f64]> + Copy + PartialEq + Debug + 
 
     /// So many joints at zero; `None` as for [`JointVector::from_values`].
     fn zeros(count: usize) -> Option<Self>;
+
+    /// Which hand of a robot with several is at work, counted from 0; 0 after `from_values` and `zeros`. It is no joint: the
+    /// robot stands alike whichever it is, but for the fingers.
+    fn hand_at_work(&self) -> usize {
+        0
+    }
+
+    /// The same joints with another hand at work; the same vector (the default) for robots with one hand.
+    #[must_use]
+    fn with_hand_at_work(self, _hand: usize) -> Self {
+        self
+    }
 }
 
 impl<const N: usize> JointVector for [f64; N] {
@@ -63,6 +75,9 @@ impl<const N: usize> JointVector for [f64; N] {
 
 /// Speed of a robot that says nothing of its speeds, metres per second: that of a person who walks slowly.
 const DEFAULT_SPEED_M_PER_S: f64 = 0.5;
+
+/// Gap of the empty hand where no action asks for another, metres.
+pub(crate) const USUAL_GAP_M: f64 = 0.08;
 
 /// Configuration of base and arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -320,6 +335,77 @@ pub trait Manipulator: Send + Sync + 'static {
 
     /// Typical metres of hand travel per unit of each joint: weights of the arm's distance.
     fn joint_weights_m(&self) -> &[f64];
+
+    /// How many hands it has, each at the end of an arm of its own. Arms may share joints, such as those of a lift.
+    ///
+    /// One (the default) is all that most robots need to say. A robot with several plans with all its joints in one vector,
+    /// which also says [which hand is at work](JointVector::hand_at_work): that is the hand that [`Manipulator::world_from_tool`]
+    /// and [`Manipulator::inverse_near`] are about, and that is open by the gap; the others are empty and open by
+    /// [`Manipulator::idle_gap_m`]. The methods below from here on say of each hand what `hand`, `inverse`, `base_for`,
+    /// `may_reach`, `turn_to_reach` and `hand_ties` say of the first.
+    fn hands(&self) -> usize {
+        1
+    }
+
+    /// How far a hand is open that is not at work, metres; it is opened so far before another hand goes to work.
+    fn idle_gap_m(&self) -> f64 {
+        let gaps = (0..self.hands()).map(|hand| self.hand_of(hand).max_gap_m());
+        gaps.fold(USUAL_GAP_M, f64::min)
+    }
+
+    /// One of the hands.
+    fn hand_of(&self, _hand: usize) -> &dyn Hand {
+        self.hand()
+    }
+
+    /// [`Manipulator::inverse`] for the hand that is at work in `now`; joints that do not move this hand stay as in `now`.
+    fn inverse_from(
+        &self,
+        _now: &Self::Joints,
+        base: &[f64; 3],
+        world_from_tool: &Isometry3<f64>,
+        rng: &mut dyn Rng,
+    ) -> Option<Self::Joints> {
+        self.inverse(base, world_from_tool, rng)
+    }
+
+    /// [`Manipulator::base_for`] for one of the hands.
+    fn base_for_hand(&self, _hand: usize, world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] {
+        self.base_for(world_from_tool, rng)
+    }
+
+    /// [`Manipulator::may_reach`] for one of the hands.
+    fn may_reach_with(&self, _hand: usize, base: &[f64; 3], world_from_tool: &Isometry3<f64>) -> bool {
+        self.may_reach(base, world_from_tool)
+    }
+
+    /// [`Manipulator::turn_to_reach`] for one of the hands.
+    fn turn_to_reach_with(
+        &self,
+        _hand: usize,
+        base: &[f64; 3],
+        world_from_tool: &Isometry3<f64>,
+        centre: &Point2<f64>,
+        rng: &mut dyn Rng,
+    ) -> Option<f64> {
+        self.turn_to_reach(base, world_from_tool, centre, rng)
+    }
+
+    /// [`Manipulator::hand_ties`] of one of the hands.
+    fn hand_ties_of(&self, _hand: usize) -> HandTies {
+        self.hand_ties()
+    }
+
+    /// Of which hand a link of the groups [`LinkGroup::Hand`] and [`LinkGroup::Finger`] is a part; a number of the links of any
+    /// other group that nobody asks for.
+    fn hand_of_link(&self, _link: usize) -> usize {
+        0
+    }
+
+    /// `now` with those joints that do not move the hand at work as in `posture`: its other arms out of the way.
+    fn with_others_at(&self, now: &Self::Joints, _posture: &Self::Joints) -> Self::Joints {
+        *now
+    }
 
     /// Does the base move along its heading only, and turn on the spot? Its drives then are those of
     /// [`heading_drive`](crate::heading_drive).

@@ -75,7 +75,8 @@ impl<J: JointVector> MobileArmSpace<J> {
     }
 
     fn interpolate_arm(&self, a: &J, b: &J, t: f64) -> J {
-        let mut out = *a;
+        // Whichever hand is at work at the end is so all the way.
+        let mut out = a.with_hand_at_work(b.hand_at_work());
         for ((slot, q), limit) in out.as_mut().iter_mut().zip(b.as_ref()).zip(&self.limits) {
             let d = difference(*slot, *q, limit);
             let value = *slot + d * t;

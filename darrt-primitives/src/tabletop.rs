@@ -19,7 +19,7 @@ use crate::edge_margin::Brink;
 use crate::grasp::hold::{Hold, Load, NoHold, hold};
 use crate::grasp::{Grasp, GraspFamily};
 use crate::length_range::LengthRange;
-use crate::manipulator::{Configuration, Hand, Manipulator};
+use crate::manipulator::{Configuration, Hand, Manipulator, USUAL_GAP_M};
 use crate::mobile_arm_space::MobileArmSpace;
 use crate::mode::{Contacts, Held, Mode, SurfaceId};
 use crate::object_space::ObjectSpace;
@@ -206,13 +206,11 @@ impl<J> ActionSettings<J> {
             base_tries: 24,
             grasp_tries: 4,
             postures: Vec::new(),
-            travel_gap_m: TRAVEL_GAP_M.min(hand.max_gap_m()),
+            travel_gap_m: USUAL_GAP_M.min(hand.max_gap_m()),
         }
     }
 }
 
-/// Gap of the empty hand where no action asks for another, metres.
-const TRAVEL_GAP_M: f64 = 0.08;
 /// How much the fingers open to let go of an object, metres: at a table's corner there is no room for more.
 const RELEASE_OPENING_M: f64 = 0.01;
 
