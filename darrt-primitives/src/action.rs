@@ -10,6 +10,7 @@
 //! | hold the arm so that the base can drive | `fold`, `drive`, `width` |
 //! | find a base and an arm configuration for a hand pose | [`stance`] |
 //! | turn what is round so that an arm of few joints reaches it | [`mod@turned`] |
+//! | choose the hand, for a robot with several | [`mod@at_work`] |
 //! | know how far the hand must travel to push or grasp | [`approach`] |
 //! | push an object, or make it slide with a hand of your own | [`push`], [`mod@slide`] |
 //! | grasp and lift | [`pick`] |
@@ -21,6 +22,7 @@ use darrt_core::primitive::{Infeasible, Instances};
 use crate::tabletop::{Tabletop, TabletopState};
 
 pub mod approach;
+pub mod at_work;
 mod drive;
 mod fold;
 pub mod line;

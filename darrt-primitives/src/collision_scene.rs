@@ -17,7 +17,7 @@ use darrt_geom::shape::Shape;
 use nalgebra::Isometry3;
 
 use crate::base_path::floor_plan::FloorPlan;
-use crate::manipulator::{LinkGroup, Manipulator};
+use crate::manipulator::{JointVector as _, LinkGroup, Manipulator};
 use crate::mode::{Contacts, TouchReason};
 use crate::tabletop::{Movable, Support, TabletopState};
 
@@ -44,13 +44,17 @@ pub struct CollisionScene {
     exceptions: Vec<Closer>,
     links: Vec<BodyIndex>,
     objects: Vec<BodyIndex>,
-    fingers: Vec<BodyIndex>,
+    /// By hand.
+    fingers: Vec<Vec<BodyIndex>>,
     /// By surface: the fixed bodies under it.
     supports: Vec<Vec<BodyIndex>>,
     base_links: BodySet,
     arm_links: BodySet,
+    /// Palms and fingers, and the fingers alone, of all hands.
     hand_links: BodySet,
     finger_links: BodySet,
+    /// By hand: palm and fingers.
+    hands: Vec<BodySet>,
     all_links: BodySet,
     /// The fixed bodies seen from above.
     floor_plan: Arc<FloorPlan>,
@@ -129,15 +133,23 @@ impl CollisionScene {
             let links = links.iter().zip(robot.links());
             links.filter(|(_, link)| wanted.contains(&link.group)).map(|(id, _)| *id).collect()
         };
-        let fingers = in_group(&[LinkGroup::Finger]);
+        let of_hand = |hand: usize, set: BodySet| -> Vec<BodyIndex> {
+            let links =
+                links.iter().enumerate().filter(|(link, id)| set.contains(**id) && robot.hand_of_link(*link) == hand);
+            links.map(|(_, id)| *id).collect()
+        };
+        let hands = robot.hands().max(1);
+        let [finger_links, hand_links] =
+            [&[LinkGroup::Finger][..], &[LinkGroup::Hand, LinkGroup::Finger]].map(in_group);
         Ok(Self {
             supports: supports.collect(),
             base_links: in_group(&[LinkGroup::Base]),
             arm_links: in_group(&[LinkGroup::Arm, LinkGroup::Hand, LinkGroup::Finger]),
-            hand_links: in_group(&[LinkGroup::Hand, LinkGroup::Finger]),
+            hands: (0..hands).map(|hand| of_hand(hand, hand_links).into_iter().collect()).collect(),
+            hand_links,
             all_links: links.iter().copied().collect(),
-            fingers: fingers.iter().collect(),
-            finger_links: fingers,
+            fingers: (0..hands).map(|hand| of_hand(hand, finger_links)).collect(),
+            finger_links,
             model: model.build(),
             strictness,
             unseen_m: UNSEEN_M,
@@ -176,6 +188,7 @@ impl CollisionScene {
             arm_links: self.arm_links,
             hand_links: self.hand_links,
             finger_links: self.finger_links,
+            hands: self.hands.clone(),
             all_links: self.all_links,
             floor_plan: Arc::clone(&self.floor_plan),
             base_from_link: OnceLock::new(),
@@ -312,14 +325,14 @@ impl CollisionScene {
             }
         }
         if let Some(held) = state.mode.held() {
-            self.allow_fingers(held.object, ContactReason::Held, out);
+            self.allow_fingers(state, held.object, ContactReason::Held, out);
         }
         if let Some((object, reason)) = contacts.fingers {
             let reason = match reason {
                 TouchReason::Push => ContactReason::PushContact,
                 _ => ContactReason::GraspContact,
             };
-            self.allow_fingers(object, reason, out);
+            self.allow_fingers(state, object, reason, out);
         }
         if let Some((object, surface)) = contacts.support
             && let (Some(object), Some(under)) = (self.objects.get(object.index()), self.supports.get(surface.index()))
@@ -330,10 +343,23 @@ impl CollisionScene {
         }
     }
 
-    fn allow_fingers(&self, object: ObjectId, reason: ContactReason, out: &mut AllowedContacts) {
-        if let Some(object) = self.objects.get(object.index()) {
-            self.fingers.iter().for_each(|finger| out.allow(*finger, *object, reason));
+    /// The fingers of the hand at work may touch an object.
+    fn allow_fingers<M: Manipulator>(
+        &self,
+        state: &TabletopState<M>,
+        object: ObjectId,
+        reason: ContactReason,
+        out: &mut AllowedContacts,
+    ) {
+        let fingers = self.fingers.get(state.robot.arm.hand_at_work());
+        if let Some((object, fingers)) = self.objects.get(object.index()).zip(fingers) {
+            fingers.iter().for_each(|finger| out.allow(*finger, *object, reason));
         }
+    }
+
+    /// Palm and fingers of the hand at work.
+    fn hand_at_work<M: Manipulator>(&self, state: &TabletopState<M>) -> BodySet {
+        self.hands.get(state.robot.arm.hand_at_work()).copied().unwrap_or(BodySet::EMPTY)
     }
 
     /// The bodies of the objects, by id.

@@ -49,6 +49,8 @@ pub struct Mode {
     /// The object beside, around or under which the hand stands: it must retreat in a straight line before it may do
     /// anything else. Not among the facts, so that they are shared before, beside it and after.
     engaged: Option<ObjectId>,
+    /// See [`Mode::hand`].
+    hand: u16,
     /// See [`Mode::done`].
     done: u64,
 }
@@ -64,7 +66,7 @@ struct Facts {
 
 impl Clone for Mode {
     fn clone(&self) -> Self {
-        Self { facts: Arc::clone(&self.facts), engaged: self.engaged, done: self.done }
+        Self { facts: Arc::clone(&self.facts), engaged: self.engaged, hand: self.hand, done: self.done }
     }
 
     /// Motions write their mode again and again into the same state: nothing is counted as long as it stays.
@@ -72,7 +74,7 @@ impl Clone for Mode {
         if !Arc::ptr_eq(&self.facts, &source.facts) {
             self.facts = Arc::clone(&source.facts);
         }
-        (self.engaged, self.done) = (source.engaged, source.done);
+        (self.engaged, self.hand, self.done) = (source.engaged, source.hand, source.done);
     }
 }
 
@@ -80,7 +82,7 @@ impl Mode {
     /// Every object rests on the given surface, the hand is free and open by `gap_m`.
     pub fn resting(rests_on: impl IntoIterator<Item = SurfaceId>, gap_m: f64) -> Self {
         let rests_on = rests_on.into_iter().map(Some).collect();
-        Self { facts: Arc::new(Facts { rests_on, held: None, gap_m }), engaged: None, done: 0 }
+        Self { facts: Arc::new(Facts { rests_on, held: None, gap_m }), engaged: None, hand: 0, done: 0 }
     }
 
     /// The surface that `object` rests on; `None` while it is held.
@@ -106,6 +108,19 @@ impl Mode {
     /// Is the hand free: nothing held and nothing to retreat from?
     pub fn is_hand_free(&self) -> bool {
         self.facts.held.is_none() && self.engaged.is_none()
+    }
+
+    /// Which of the robot's hands is at work: of this one the mode says what it holds, where it stands and how far it is open.
+    /// 0, unless the robot has several ([`Manipulator::hands`](crate::manipulator::Manipulator::hands)).
+    pub fn hand(&self) -> usize {
+        usize::from(self.hand)
+    }
+
+    /// The same with another hand at work, if the one at work is free; else the same.
+    #[must_use]
+    pub fn with_hand(self, hand: usize) -> Self {
+        let hand = if self.is_hand_free() { u16::try_from(hand).unwrap_or(u16::MAX) } else { self.hand };
+        Self { hand, ..self }
     }
 
     /// What has been done on the way here of up to 64 things that somebody wants to be done on the way, one bit each: what a
@@ -150,7 +165,7 @@ impl Mode {
         }
         let mut facts = Facts { held: Some(Box::new(held)), gap_m, ..Facts::clone(&self.facts) };
         *facts.rests_on.get_mut(held.object.index())? = None;
-        Some(Self { facts: Arc::new(facts), engaged: None, done: self.done })
+        Some(Self { facts: Arc::new(facts), engaged: None, ..*self })
     }
 
     /// The held object stands on `surface` and the hand has opened to `gap_m` around it. `None` if nothing is held.
@@ -158,7 +173,7 @@ impl Mode {
         let object = self.held()?.object;
         let mut facts = Facts { held: None, gap_m, ..Facts::clone(&self.facts) };
         *facts.rests_on.get_mut(object.index())? = Some(surface);
-        Some(Self { facts: Arc::new(facts), engaged: Some(object), done: self.done })
+        Some(Self { facts: Arc::new(facts), engaged: Some(object), ..*self })
     }
 }
 

@@ -173,11 +173,16 @@ pub struct ActionSettings<J> {
     pub grasp_tries: usize,
     /// Arm postures to travel through; may be empty.
     pub postures: Vec<J>,
-    /// Gap of the hand where nothing else asks for one, metres.
+    /// Gap of the hand where nothing else asks for one, metres; for a robot with several hands [`Manipulator::idle_gap_m`].
     pub travel_gap_m: f64,
 }
 
 impl<J> ActionSettings<J> {
+    /// [`ActionSettings::for_hand`] for the first of its hands, with the gap that all of them have between two actions.
+    pub fn for_robot<M: Manipulator<Joints = J>>(robot: &M) -> Self {
+        Self { travel_gap_m: robot.idle_gap_m(), ..Self::for_hand(robot.hand()) }
+    }
+
     /// What serves at ordinary tables: the values that problem files have by default, within what `hand` can open. All
     /// primitives may drive the base, and there are no postures to travel through.
     pub fn for_hand(hand: &dyn Hand) -> Self {
@@ -249,6 +254,9 @@ impl<M: Manipulator> Tabletop<M> {
         settings: ActionSettings<M::Joints>,
     ) -> Result<Self, GeomError> {
         let (objects, movables): (_, Vec<Movable>) = objects.into_iter().unzip();
+        // Where one hand stops to be at work and another begins, both are open alike.
+        let travel_gap_m = if manipulator.hands() > 1 { manipulator.idle_gap_m() } else { settings.travel_gap_m };
+        let settings = ActionSettings { travel_gap_m, ..settings };
         let strictness = Strictness { safety: settings.safety, ..Strictness::default() };
         let collision_scene = CollisionScene::new(&*manipulator, &movables, &supports, fixed, strictness)?;
         let collision_scene = Arc::new(collision_scene);
@@ -344,16 +352,22 @@ impl<M: Manipulator> Tabletop<M> {
         self.movable(held.object).map_or(std::f64::consts::PI, |object| object.max_tilt_rad).min(held.max_tilt_rad)
     }
 
-    /// Does `grasp`, of this family of the object's, hold it?
+    /// Does `grasp` by one of the robot's hands, of this family of the object's, hold it?
     ///
     /// # Errors
     /// [`NoHold`] with what fails. A family that does not know where its pads lie ([`GraspFamily::pads`]) always holds.
-    pub fn hold(&self, movable: &Movable, family: &dyn GraspFamily, grasp: &Grasp) -> Result<Hold, NoHold> {
+    pub fn hold(
+        &self,
+        hand: usize,
+        movable: &Movable,
+        family: &dyn GraspFamily,
+        grasp: &Grasp,
+    ) -> Result<Hold, NoHold> {
         let Some(contact) = family.pads(grasp) else { return Ok(Hold { max_tilt_rad: std::f64::consts::PI }) };
         let load = Load {
             mass_kg: movable.mass_kg,
             friction: movable.friction.fingers,
-            grip_force_n: self.manipulator.hand().grip_force_n(),
+            grip_force_n: self.manipulator.hand_of(hand).grip_force_n(),
             payload_kg: self.manipulator.payload_kg(),
         };
         hold(&grasp.object_from_tool.inverse(), &contact, &load)
@@ -402,8 +416,8 @@ impl<M: Manipulator> Domain for Tabletop<M> {
     }
 
     fn may_go_on(&self, mode: &Mode, next: &Mode) -> bool {
-        // An empty hand may open or close wherever it stands.
-        mode == next || mode.opened_to(next.gap_m()).is_some_and(|mode| mode == *next)
+        // An empty hand may open or close wherever it stands, and another one go to work.
+        mode == next || mode.opened_to(next.gap_m()).is_some_and(|mode| mode.with_hand(next.hand()) == *next)
     }
 
     fn carried(&self, mode: &Mode) -> ComponentSet {

@@ -8,4 +8,5 @@ pub mod gantry;
 pub mod scene_oracle;
 pub mod strategies;
 pub mod table;
+pub mod twins;
 pub mod yardstick;

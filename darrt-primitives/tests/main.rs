@@ -9,4 +9,5 @@ mod laws_modes;
 mod laws_page;
 mod laws_sequences;
 mod line;
+mod two_hands;
 mod without_robot;

@@ -11,7 +11,7 @@ use nalgebra::{Isometry3, Point2, Point3, Rotation2, Vector2};
 use super::pick::overhangs;
 use super::push::Pushable;
 use crate::contact::HandStance;
-use crate::manipulator::Manipulator;
+use crate::manipulator::{Configuration, JointVector as _, Manipulator};
 use crate::push::edge_stop::EdgeRule;
 use crate::tabletop::{Tabletop, TabletopState};
 
@@ -21,7 +21,7 @@ pub const NO_WAY_M: f64 = 1e9;
 /// Rounding of the depth of a place where a push may end, metres; less than the push itself allows.
 const DEPTH_ROUNDING_M: f64 = 5e-10;
 
-/// Metres from the tool to the nearest contact from which [`push`](super::push::push) may bring `object` towards `target`:
+/// Metres from the nearest tool to the nearest contact from which [`push`](super::push::push) may bring `object` towards `target`:
 /// behind it, seen from there, with the hand leaning as it may. Where the push ends at the edge, it may be any of an arc of
 /// contacts, and near a corner of the surface any on the rim. [`NO_WAY_M`] for what cannot be pushed.
 ///
@@ -35,15 +35,15 @@ pub fn to_push_m<M: Manipulator>(
 ) -> f64 {
     let Ok(pushable) = Pushable::new(m, from, object) else { return NO_WAY_M };
     let ends = ends(m, &pushable, &flat(target));
-    let tool = tool(m, from);
     let of_stance = |stance: HandStance| {
         let (setback_m, height_m) = pushable.tool_place(&stance)?;
-        Some(PushCircle { center: pushable.center(), setback_m, height_m }.distance_m(&tool, &ends))
+        let circle = PushCircle { center: pushable.center(), setback_m, height_m };
+        tools(m, from).map(|tool| circle.distance_m(&tool, &ends)).min_by(f64::total_cmp)
     };
     pushable.stances(m, false).filter_map(of_stance).min_by(f64::total_cmp).unwrap_or(NO_WAY_M)
 }
 
-/// Metres from the tool to the nearest place from which `object` can be grasped as far as its families know
+/// Metres from the nearest tool to the nearest place from which `object` can be grasped as far as its families know
 /// ([`tool_reach_m`](crate::grasp::GraspFamily::tool_reach_m)), whichever side of the object that is on; [`NO_WAY_M`]
 /// where no grasp fits, as for a plate in the middle of a table.
 ///
@@ -53,7 +53,8 @@ pub fn to_grasp_m<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>, obje
     let (Some(movable), Some(pose)) = (m.movable(object), from.object(object)) else { return NO_WAY_M };
     let overhangs = overhangs(m, from, object, movable, pose);
     let fitting = movable.grasps.iter().filter(|family| !family.needs_overhang() || overhangs);
-    let gap_m = (tool(m, from) - Point3::from(pose.translation.vector)).norm();
+    let center = Point3::from(pose.translation.vector);
+    let gap_m = tools(m, from).map(|tool| (tool - center).norm()).fold(NO_WAY_M, f64::min);
     fitting.map(|family| (gap_m - family.tool_reach_m()).max(0.0)).min_by(f64::total_cmp).unwrap_or(NO_WAY_M)
 }
 
@@ -136,6 +137,11 @@ fn flat(pose: &Isometry3<f64>) -> Point2<f64> {
     Point2::new(pose.translation.x, pose.translation.y)
 }
 
-fn tool<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>) -> Point3<f64> {
-    Point3::from(m.working_point(&from.robot))
+/// Where the hands are that may go to work.
+fn tools<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>) -> impl Iterator<Item = Point3<f64>> {
+    let hands = m.manipulator().hands();
+    let all = if hands < 2 || from.mode.held().is_some() { 0..0 } else { 0..hands };
+    let of_hand = |hand| Configuration { arm: from.robot.arm.with_hand_at_work(hand), ..from.robot };
+    let only = all.is_empty().then_some(from.robot);
+    only.into_iter().chain(all.map(of_hand)).map(|q| Point3::from(m.working_point(&q)))
 }

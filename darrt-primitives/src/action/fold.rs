@@ -13,7 +13,7 @@ use super::drive::{Drive, Looks};
 use super::line;
 use super::turned::turned_about;
 use super::width::Widths;
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, JointVector as _, Manipulator};
 use crate::mode::Held;
 use crate::object_space::upright;
 use crate::tabletop::{Tabletop, TabletopState};
@@ -230,14 +230,14 @@ fn carrying<M: Manipulator>(
     let tool = Vector3::new(x + distance_m * bearing.cos(), y + distance_m * bearing.sin(), height_m);
     let at_tool = Isometry3::from_parts(tool.into(), UnitQuaternion::from(turned.rotation));
     let robot = m.manipulator();
-    let base = &from.robot.base;
-    if !robot.may_reach(base, &at_tool) {
+    let (base, hand) = (&from.robot.base, from.robot.arm.hand_at_work());
+    if !robot.may_reach_with(hand, base, &at_tool) {
         return None;
     }
     let centre = Point2::new(tool.x, tool.y);
-    let turn = robot.turn_to_reach(base, &at_tool, &centre, rng);
+    let turn = robot.turn_to_reach_with(hand, base, &at_tool, &centre, rng);
     let at_tool = turn.map_or(at_tool, |turn| turned_about(&at_tool, &centre, turn));
-    robot.inverse(base, &at_tool, rng)
+    robot.inverse_from(&from.robot.arm, base, &at_tool, rng)
 }
 
 /// Does what is held lean no farther than it may while the arm goes straight from `a` to `b`, as far as a few looks tell?

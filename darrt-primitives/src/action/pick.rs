@@ -7,6 +7,7 @@ use nalgebra::{Isometry3, Point2, Vector3};
 use rand::{Rng, RngExt};
 
 use super::Chain;
+use super::at_work::at_work;
 use super::line::{self, follow_in_room, room_for_hand};
 use super::retreat::retreat;
 use super::slide::approach;
@@ -16,7 +17,7 @@ use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::grasp::hold::Hold;
 use crate::grasp::rim::{rim_is_graspable, rim_overhangs};
 use crate::grasp::{Grasp, GraspFamily, GraspKind};
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, JointVector as _, Manipulator};
 use crate::mode::{Contacts, Held, TouchReason};
 use crate::primitive;
 use crate::tabletop::{Movable, Tabletop, TabletopState};
@@ -49,7 +50,9 @@ pub fn pick<M: Manipulator>(
     }
     let mut chain = Chain::at(from);
     retreat(m, &mut chain, m.settings().retreat_m)?;
-    let beside = from.mode.engaged_with(object).ok_or(Infeasible::NoGrasp)?;
+    let at_work = &*at_work(m, from, rng);
+    let hand = at_work.robot.arm.hand_at_work();
+    let beside = at_work.mode.engaged_with(object).ok_or(Infeasible::NoGrasp)?;
     let mut fitted = 0;
     let mut why = Infeasible::NoGrasp;
     let draws = m.settings().grasp_tries * GRASPS_PER_TRY;
@@ -60,13 +63,13 @@ pub fn pick<M: Manipulator>(
         if family.needs_overhang() && !overhangs {
             continue;
         }
-        let Some(mut grasp) = drawn_grasp(m, &**family, rng) else { continue };
-        grasp.open_gap_m = grasp.open_gap_m.min(m.manipulator().hand().max_gap_m());
-        let seen = turned(m, object, &from.robot.base, pose, &grasp.object_from_tool, rng);
+        let Some(mut grasp) = drawn_grasp(m, hand, &**family, rng) else { continue };
+        grasp.open_gap_m = grasp.open_gap_m.min(m.manipulator().hand_of(hand).max_gap_m());
+        let seen = turned(m, (object, hand), &from.robot.base, pose, &grasp.object_from_tool, rng);
         if !fits(m, from, object, movable, &seen, &grasp) {
             continue;
         }
-        let Ok(hold) = m.hold(movable, &**family, &grasp) else {
+        let Ok(hold) = m.hold(hand, movable, &**family, &grasp) else {
             why = Infeasible::NoHold;
             continue;
         };
@@ -74,7 +77,7 @@ pub fn pick<M: Manipulator>(
         let tries = m.settings().base_tries.div_ceil(2);
         let wanted = Wanted { world_from_tool: &at_grasp, tries, base: None };
         let mode = beside.opened_to(grasp.open_gap_m).ok_or(Infeasible::NoGrasp)?;
-        let mut probe = Probe::new(m, from, mode);
+        let mut probe = Probe::new(m, at_work, mode);
         let open = straddling(object, &grasp);
         if let Err(blame) = probe.check_hand(&at_grasp, &open) {
             why = Infeasible::Blocked(blame);
@@ -94,7 +97,7 @@ pub fn pick<M: Manipulator>(
         }
         fitted += 1;
         let picking = Picking { object, pose, grasp: &grasp, hold, at_grasp: &at_grasp };
-        match stance(m, from, &wanted, rng, |q, care| way_of(m, q, &picking, movable, &mut probe, care)) {
+        match stance(m, at_work, &wanted, rng, |q, care| way_of(m, q, &picking, movable, &mut probe, care)) {
             Ok(way) => return assemble(m, chain, &picking, &way, rng),
             Err(refused) => why = refused,
         }
@@ -121,10 +124,15 @@ impl Picking<'_> {
     }
 }
 
-/// A grasp of the family for a hand that may be tilted as it likes, or one of its grid for which the hand is tilted as it is, the
+/// A grasp of the family for one of the robot's hands, which may be tilted as it likes, or one of its grid for which the hand is tilted as it is, the
 /// object upright; `None` where there is none.
-pub fn drawn_grasp<M: Manipulator>(m: &Tabletop<M>, family: &dyn GraspFamily, rng: &mut dyn Rng) -> Option<Grasp> {
-    let ties = m.manipulator().hand_ties();
+pub fn drawn_grasp<M: Manipulator>(
+    m: &Tabletop<M>,
+    hand: usize,
+    family: &dyn GraspFamily,
+    rng: &mut dyn Rng,
+) -> Option<Grasp> {
+    let ties = m.manipulator().hand_ties_of(hand);
     if ties.up_in_tool.is_none() {
         return Some(family.sample(rng));
     }

@@ -67,7 +67,7 @@ pub fn place<M: Manipulator>(
         let care = if draw < YAW_DRAWS / 2 { m.collision_scene().most_care() } else { 0 };
         let standing = standing_pose(m, &held, surface, target, rng).ok_or(Infeasible::OffSupport)?;
         let object_from_tool = held.tool_from_object.inverse();
-        let standing = turned(m, held.object, &from.robot.base, &standing, &object_from_tool, rng);
+        let standing = turned(m, (held.object, from.mode.hand()), &from.robot.base, &standing, &object_from_tool, rng);
         let at_place = standing * object_from_tool;
         before.place(held.object, &standing);
         after.place(held.object, &standing);
@@ -115,7 +115,8 @@ const YAW_DRAWS: usize = 100;
 
 /// How far the fingers open to let go.
 fn release_gap_m<M: Manipulator>(m: &Tabletop<M>, from: &TabletopState<M>) -> f64 {
-    (from.mode.gap_m() + m.settings().place.release_opening_m).min(m.manipulator().hand().max_gap_m())
+    (from.mode.gap_m() + m.settings().place.release_opening_m)
+        .min(m.manipulator().hand_of(from.mode.hand()).max_gap_m())
 }
 
 /// Upright on the surface over the target's x and y.

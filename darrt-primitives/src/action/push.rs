@@ -6,6 +6,7 @@ use nalgebra::Isometry3;
 use rand::{Rng, RngExt};
 
 use super::Chain;
+use super::at_work::at_work;
 use super::retreat::retreat;
 use super::slide::{SlidingHand, SlidingWay, assemble, find};
 use super::stance::Probe;
@@ -48,13 +49,14 @@ pub fn push<M: Manipulator>(
     target: &Isometry3<f64>,
     rng: &mut dyn Rng,
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
-    let pushable = Pushable::new(m, from, object)?;
+    let at_work = &*at_work(m, from, rng);
+    let pushable = Pushable::new(m, at_work, object)?;
     let settle_m = pushable.steady(m)?.settle_m.max(LEAST_PUSH_M);
     let end = end_of_push(m, &pushable, target, settle_m, rng)?;
     let care = if rng.random_bool(CLOSE_SHARE) { 0 } else { m.collision_scene().most_care() };
-    let beside = from.mode.opened_to(pushable.gap_m).and_then(|mode| mode.engaged_with(object));
-    let probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
-    let mut attempt = Attempt { m, from, pushable: &pushable, probe, twin: rng.random_bool(0.5), care };
+    let beside = at_work.mode.opened_to(pushable.gap_m).and_then(|mode| mode.engaged_with(object));
+    let probe = Probe::new(m, at_work, beside.ok_or(Infeasible::NoContact)?);
+    let mut attempt = Attempt { m, from, at_work, pushable: &pushable, probe, twin: rng.random_bool(0.5), care };
 
     let straight = Course::straight(m, from, &pushable, &end, settle_m, care);
     if let Ok(course) = &straight
@@ -119,6 +121,8 @@ pub fn hand_behind<M: Manipulator>(
 struct Attempt<'a, M: Manipulator> {
     m: &'a Tabletop<M>,
     from: &'a TabletopState<M>,
+    /// The same with the hand at work that is to push.
+    at_work: &'a TabletopState<M>,
     pushable: &'a Pushable<'a>,
     probe: Probe<'a, M>,
     twin: bool,
@@ -142,7 +146,7 @@ impl From<Infeasible> for Refusal {
 impl<M: Manipulator> Attempt<'_, M> {
     /// The push along `course`, with the hand in the first of its leans in which it can be done.
     fn run(&mut self, course: &Course, rng: &mut dyn Rng) -> Result<Instances<Tabletop<M>>, Refusal> {
-        let Self { m, from, pushable, twin, care, .. } = *self;
+        let Self { m, from, at_work, pushable, twin, care, .. } = *self;
         let mut refusal = Refusal { why: Infeasible::NoContact, is_of_hand: true };
         let mut chain = None;
         for stance_of_hand in pushable.stances(m, twin) {
@@ -162,7 +166,7 @@ impl<M: Manipulator> Attempt<'_, M> {
             };
             let hand = place.hand(pushable);
             let way = SlidingWay { slide: course.slide, least_m: course.least_m };
-            match find(m, from, (&hand, &way), &mut self.probe, |_| true, rng) {
+            match find(m, at_work, (&hand, &way), &mut self.probe, |_| true, rng) {
                 Ok(arm_way) => return Ok(assemble(m, retreated, (&hand, &way), &arm_way, rng)?),
                 Err(why) => refusal = Refusal { why, is_of_hand: false },
             }

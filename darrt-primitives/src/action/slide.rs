@@ -8,13 +8,14 @@ use nalgebra::{Isometry3, Point2, Vector3};
 use rand::Rng;
 
 use super::Chain;
+use super::at_work::at_work;
 use super::line::{Line, follow_in_room, follow_path, moved};
 use super::retreat::retreat;
 use super::stance::{Care, Probe, Refused, Wanted, at_end, stance};
 use super::travel::travel;
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
 use crate::length_range::LengthRange;
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, JointVector as _, Manipulator};
 use crate::mode::{Contacts, SurfaceId, TouchReason};
 use crate::primitive;
 use crate::push::slide::Slide;
@@ -85,11 +86,12 @@ pub fn slide<M: Manipulator>(
     accepts: impl Fn(&Configuration<M::Joints>) -> bool,
     rng: &mut dyn Rng,
 ) -> Result<Instances<Tabletop<M>>, Infeasible> {
-    let beside = from.mode.opened_to(hand.gap_m).and_then(|mode| mode.engaged_with(hand.object));
-    let mut probe = Probe::new(m, from, beside.ok_or(Infeasible::NoContact)?);
+    let at_work = at_work(m, from, rng);
+    let beside = at_work.mode.opened_to(hand.gap_m).and_then(|mode| mode.engaged_with(hand.object));
+    let mut probe = Probe::new(m, &at_work, beside.ok_or(Infeasible::NoContact)?);
     let mut chain = Chain::at(from);
     retreat(m, &mut chain, m.settings().retreat_m)?;
-    let arm_way = find(m, from, (hand, way), &mut probe, accepts, rng)?;
+    let arm_way = find(m, &at_work, (hand, way), &mut probe, accepts, rng)?;
     assemble(m, chain, (hand, way), &arm_way, rng)
 }
 
@@ -190,8 +192,8 @@ pub fn approach<M: Manipulator>(
 ) -> Result<(), Infeasible> {
     let (first, rest) = arms.split_first().ok_or(Infeasible::Unreachable)?;
     travel(m, chain, &Configuration { base, arm: *first }, gap_m, rng);
-    let mode =
-        chain.end.mode.opened_to(gap_m).and_then(|mode| mode.engaged_with(object)).ok_or(Infeasible::NoContact)?;
+    let opened = chain.end.mode.opened_to(gap_m).map(|mode| mode.with_hand(first.hand_at_work()));
+    let mode = opened.and_then(|mode| mode.engaged_with(object)).ok_or(Infeasible::NoContact)?;
     let waypoints: Vec<_> =
         rest.iter().map(|arm| Waypoint { robot: Configuration { base, arm: *arm }, pushed: 0.0 }).collect();
     let mut instance =

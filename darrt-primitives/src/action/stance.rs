@@ -12,7 +12,7 @@ use rand::{Rng, RngExt};
 use smallvec::SmallVec;
 
 use crate::collision_scene::Hand;
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, JointVector as _, Manipulator};
 use crate::mode::{Contacts, Mode};
 use crate::tabletop::{Tabletop, TabletopState};
 
@@ -83,7 +83,8 @@ impl<M: Manipulator> Blocked<M> {
 
 /// Tries bases for the wanted hand pose: sometimes the present one first, then random ones, the nearer ones of each few first,
 /// each with a few arm configurations. `accept` makes something of a stance, or refuses it and the next is tried. The first
-/// stance with all the margins that are wanted is taken, or of those found on a few more bases the one with the most.
+/// stance with all the margins that are wanted is taken, or of those found on a few more bases the one with the most. The hand is
+/// the one at work in `from`.
 ///
 /// # Errors
 /// [`Infeasible::Blocked`] with what was in the way of the last stance that the arm reached, [`Infeasible::Unreachable`]
@@ -96,6 +97,7 @@ pub fn stance<M: Manipulator, T>(
     mut accept: impl FnMut(&Configuration<M::Joints>, &mut Care) -> Result<T, Refused<M>>,
 ) -> Result<T, Infeasible> {
     let robot = m.manipulator();
+    let hand = from.robot.arm.hand_at_work();
     let Wanted { world_from_tool, tries, base: only } = *wanted;
     let [empty, loaded] = m.settings().drives;
     let drives = if from.mode.held().is_some() { loaded } else { empty };
@@ -121,7 +123,7 @@ pub fn stance<M: Manipulator, T>(
     loop {
         if bases.is_empty() {
             let few = left.min(NEAREST_OF);
-            bases.extend((0..few).map(|_| robot.base_for(world_from_tool, rng)));
+            bases.extend((0..few).map(|_| robot.base_for_hand(hand, world_from_tool, rng)));
             bases.sort_by(|a, b| space.distance(&here, b).total_cmp(&space.distance(&here, a)));
             left -= few;
         }
@@ -129,13 +131,13 @@ pub fn stance<M: Manipulator, T>(
         tries_left -= 1;
         let parked = Configuration { base, arm: from.robot.arm };
         if !m.robot().base().contains(&base)
-            || !robot.may_reach(&base, world_from_tool)
+            || !robot.may_reach_with(hand, &base, world_from_tool)
             || !m.collision_scene().is_base_clear(robot, &parked)
         {
             continue;
         }
         for _ in 0..ARM_TRIES {
-            let Some(arm) = robot.inverse(&base, world_from_tool, rng) else {
+            let Some(arm) = robot.inverse_from(&from.robot.arm, &base, world_from_tool, rng) else {
                 // Where all bases are one, the same is asked again; a numeric inverse takes longest where there is nothing.
                 lost += usize::from(base == last);
                 last = base;

@@ -31,7 +31,8 @@ pub fn transfer<M: Manipulator>(
     let held = *from.mode.held().ok_or(Infeasible::NoGrasp)?;
     let target = freely_turned(m, held.object.index(), target, rng);
     let object_from_tool = held.tool_from_object.inverse();
-    let target = turned(m, held.object, &base.unwrap_or(from.robot.base), &target, &object_from_tool, rng);
+    let target =
+        turned(m, (held.object, from.mode.hand()), &base.unwrap_or(from.robot.base), &target, &object_from_tool, rng);
     let at_target = target * object_from_tool;
     let wanted = Wanted { world_from_tool: &at_target, tries: m.settings().base_tries, base };
     let mut probe = Probe::new(m, from, from.mode.clone());

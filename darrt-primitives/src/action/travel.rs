@@ -8,7 +8,7 @@ use rand::Rng;
 use super::Chain;
 use super::fold::{Order, order};
 use crate::arm_motion::{ArmMotion, Carried, Waypoint};
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, JointVector as _, Manipulator};
 use crate::mode::{Contacts, Mode};
 use crate::primitive;
 use crate::tabletop::Tabletop;
@@ -39,7 +39,8 @@ pub fn travel<M: Manipulator>(
 
 /// Moves the arm in a straight line in joint space; nothing if it is already there.
 pub fn arm_to<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>, arm: &M::Joints, gap_m: f64) {
-    if chain.end.robot.arm != *arm {
+    // Which hand is at work is no way to go.
+    if chain.end.robot.arm.as_ref() != arm.as_ref() {
         let robot = Configuration { base: chain.end.robot.base, arm: *arm };
         let primitive =
             if chain.end.mode.held().is_some() { primitive::ARM_RIGID_TRANSFER } else { primitive::ARM_TRANSIT };
@@ -66,6 +67,9 @@ fn go<M: Manipulator>(
 ) {
     let here = &chain.end;
     let mode = here.mode.opened_to(gap_m).unwrap_or_else(|| here.mode.clone());
+    // A hand that is not free stays at work.
+    let mode = mode.with_hand(robot.arm.hand_at_work());
+    let robot = Configuration { arm: robot.arm.with_hand_at_work(mode.hand()), ..robot };
     let instance = carry(m, chain, &[Waypoint { robot, pushed: 0.0 }], &mode, primitive, Contacts::default());
     chain.push(m, instance);
 }

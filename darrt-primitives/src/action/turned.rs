@@ -13,11 +13,11 @@ use crate::tabletop::Tabletop;
 /// An object whose axis leans by more from the vertical is not turned about it, radians.
 const UPRIGHT_RAD: f64 = 1e-6;
 
-/// Where a round object stands upright, turned about its axis as the robot, its base at `base`, wants it to bring the hand to
+/// Where a round object stands upright, turned about its axis as the robot, its base at `base`, wants it to bring this hand to
 /// `object_from_tool` on it; all else as it is.
 pub fn turned<M: Manipulator>(
     m: &Tabletop<M>,
-    object: ObjectId,
+    (object, hand): (ObjectId, usize),
     base: &[f64; 3],
     world_from_object: &Isometry3<f64>,
     object_from_tool: &Isometry3<f64>,
@@ -29,7 +29,7 @@ pub fn turned<M: Manipulator>(
         return *world_from_object;
     }
     let centre = Point2::from(world_from_object.translation.vector.xy());
-    let turn = m.manipulator().turn_to_reach(base, &(world_from_object * object_from_tool), &centre, rng);
+    let turn = m.manipulator().turn_to_reach_with(hand, base, &(world_from_object * object_from_tool), &centre, rng);
     turn.map_or(*world_from_object, |turn| turned_about(world_from_object, &centre, turn))
 }
 

@@ -80,6 +80,8 @@ pub(super) struct Terms {
     /// Hand and object, against the object and what carries it.
     pub(super) near: Option<(BodySet, BodySet)>,
     pub(super) held: BodySet,
+    /// The hand at work.
+    pub(super) hand: BodySet,
 }
 
 impl Terms {
@@ -89,6 +91,7 @@ impl Terms {
             && self.strict.is_between <= other.strict.is_between
             && (self.near.is_none() || self.near == other.near)
             && self.held == other.held
+            && self.hand == other.hand
     }
 }
 
@@ -131,17 +134,18 @@ impl CollisionScene {
         let touched = contacts.fingers.and_then(|(object, _)| resting(object));
         let at_work = contacts.support.or(touched).or_else(|| mode.engaged().and_then(resting));
         let body = |object: ObjectId| self.objects.get(object.index()).copied();
+        let hand = self.hand_at_work(state);
         let near = at_work.and_then(|(object, surface)| {
             let object = body(object)?;
             let under = self.supports.get(surface.index()).into_iter().flatten().copied();
-            let (mut ones, mut others) = (self.hand_links, under.collect::<BodySet>());
+            let (mut ones, mut others) = (hand, under.collect::<BodySet>());
             for set in [&mut ones, &mut others] {
                 set.insert(object);
             }
             Some((ones, others))
         });
         let held = mode.held().and_then(|held| body(held.object)).into_iter().collect();
-        self.write(Terms { strict, near, held }, keep);
+        self.write(Terms { strict, near, held, hand }, keep);
     }
 
     /// How far every pair keeps while the hand is at work nowhere: into `keep`.
@@ -167,7 +171,7 @@ impl CollisionScene {
             may(ones, others, contact_m);
         }
         if !terms.held.is_empty() {
-            may(self.hand_links, terms.held, contact_m);
+            may(terms.hand, terms.held, contact_m);
         }
         *most_m = robot_m.max(held_m).max(object_m);
         if *most_m > least_m {

@@ -17,6 +17,8 @@ use crate::tabletop::TabletopState;
 /// The bodies of the hand as they hang on the tool.
 #[derive(Debug, Clone)]
 pub struct Hand {
+    /// Which one.
+    links: BodySet,
     tool_from_link: Vec<(BodyIndex, Isometry3<f64>)>,
 }
 
@@ -73,8 +75,9 @@ impl CollisionScene {
         let mut world_from_link = vec![Isometry3::identity(); self.links.len()];
         robot.link_poses(&like.robot, like.mode.gap_m(), &mut world_from_link);
         let tool_from_world = robot.world_from_tool(&like.robot).inverse();
-        let links = self.links.iter().zip(&world_from_link).filter(|(id, _)| self.hand_links.contains(**id));
-        Hand { tool_from_link: links.map(|(id, pose)| (*id, tool_from_world * pose)).collect() }
+        let own = self.hand_at_work(like);
+        let links = self.links.iter().zip(&world_from_link).filter(|(id, _)| own.contains(**id));
+        Hand { links: own, tool_from_link: links.map(|(id, pose)| (*id, tool_from_world * pose)).collect() }
     }
 
     /// Could the hand be at `world_from_tool` with the objects of `like`, if there were no arm behind it? The hand and the
@@ -126,12 +129,12 @@ impl CollisionScene {
         for (id, tool_from_link) in &hand.tool_from_link {
             self.model.set_pose(&mut worker.scratch, *id, &(world_from_tool * tool_from_link));
         }
-        let mut moved = self.hand_links;
+        let mut moved = hand.links;
         let with = contacts.support.map(|(object, _)| object).or(like.mode.held().map(|held| held.object));
         if let Some(object) = with.and_then(|object| self.objects.get(object.index())) {
             moved.insert(*object);
         }
-        (moved, BodySet::ALL.difference(&self.all_links.difference(&self.hand_links)))
+        (moved, BodySet::ALL.difference(&self.all_links.difference(&hand.links)))
     }
 
     /// How far a resting object could slide with this [care](CollisionScene::most_care) if the robot were not there: metres

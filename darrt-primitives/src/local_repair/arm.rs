@@ -9,7 +9,7 @@ use darrt_geom::body_set::BodySet;
 use rand::{Rng, RngExt};
 
 use crate::collision_scene::{Strict, Worker};
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, JointVector as _, Manipulator};
 use crate::mode::Contacts;
 use crate::tabletop::{Tabletop, TabletopState};
 
@@ -140,6 +140,7 @@ impl<M: Manipulator> Search<'_, M> {
             let on_line = self.m.robot().interpolate(a, b, s);
             q = self.m.robot().interpolate(&on_line, &q, 0.35);
         }
+        q.arm = q.arm.with_hand_at_work(b.arm.hand_at_work());
         q
     }
 

@@ -99,7 +99,7 @@ struct Placed {
 impl<M: Manipulator> TabletopBuilder<M> {
     /// An empty room with `robot` at `start`.
     pub fn new(robot: M, start: Configuration<M::Joints>) -> Self {
-        let settings = ActionSettings::for_hand(robot.hand());
+        let settings = ActionSettings::for_robot(&robot);
         let (supports, fixed, objects) = (Vec::new(), Vec::new(), Vec::new());
         Self { robot, start, base: None, positions: None, supports, fixed, objects, settings, error: None }
     }
@@ -174,7 +174,7 @@ impl<M: Manipulator> TabletopBuilder<M> {
         }
     }
 
-    /// Changes the parameters of the actions; at first they are those of [`ActionSettings::for_hand`].
+    /// Changes the parameters of the actions; at first they are those of [`ActionSettings::for_robot`].
     #[must_use]
     pub fn with_settings(mut self, change: impl FnOnce(&mut ActionSettings<M::Joints>)) -> Self {
         change(&mut self.settings);

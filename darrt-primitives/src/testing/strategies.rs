@@ -88,7 +88,7 @@ fn held<M: Manipulator>(m: &Tabletop<M>, state: &TabletopState<M>, seed: u64) ->
     let movable = m.movables().get(index)?;
     let family = movable.grasps.get(rng.random_range(0..movable.grasps.len()))?;
     let grasp = family.sample(&mut rng);
-    let max_tilt_rad = m.hold(movable, &**family, &grasp).ok()?.max_tilt_rad;
+    let max_tilt_rad = m.hold(state.mode.hand(), movable, &**family, &grasp).ok()?.max_tilt_rad;
     let held = Held { object: ObjectId::new(index), tool_from_object: grasp.object_from_tool.inverse(), max_tilt_rad };
     let mut state = state.clone();
     state.mode = state.mode.attached(held, grasp.closed_gap_m)?;

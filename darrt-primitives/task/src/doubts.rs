@@ -294,7 +294,7 @@ impl<'a, M: Manipulator> Outlook<'a, M> {
         let (m, movable) = (self.m, self.m.movable(id)?);
         let family = movable.grasps.get(rng.random_range(0..movable.grasps.len()))?;
         let grasp = family.sample(rng);
-        let hold = m.hold(movable, &**family, &grasp).ok()?;
+        let hold = m.hold(0, movable, &**family, &grasp).ok()?;
         let tool_from_object = grasp.object_from_tool.inverse();
         let held = Held { object: id, tool_from_object, max_tilt_rad: hold.max_tilt_rad };
         let mut state = from.clone();

@@ -150,7 +150,7 @@ fn settings<M: TaskRobot>(
         let unknown = |known| RobotError::unknown_posture(format!("transit.postures[{index}]"), name, known);
         robot.posture(name).ok_or_else(|| M::posture_names(&problem.robot).map_or_else(|error| error, unknown))
     });
-    let usual = ActionSettings::for_hand(robot.hand());
+    let usual = ActionSettings::for_robot(robot);
     Ok(ActionSettings {
         push: PushSettings {
             gap_m: push.gap_m.min(robot.hand().max_gap_m()),

@@ -11,7 +11,7 @@ use crate::action::stance::Probe;
 use crate::contact::{Fingertips, HandStance, PushHeights, RimContact};
 use crate::hand_ties::HandTies;
 use crate::length_range::LengthRange;
-use crate::manipulator::Manipulator;
+use crate::manipulator::{JointVector as _, Manipulator};
 use crate::mode::{Contacts, SurfaceId};
 use crate::primitive;
 use crate::push::Friction;
@@ -59,14 +59,15 @@ impl<'a> Pushable<'a> {
         let on = from.mode.support_of(object).ok_or(Infeasible::OffSupport)?;
         let surface = m.surface(on).ok_or(Infeasible::OffSupport)?;
         let pose = from.object(object).ok_or(Infeasible::NoContact)?;
-        let hand = m.manipulator().hand();
-        let gap_m = disc.finger_gap_m(settings.gap_m);
+        let at_work = from.robot.arm.hand_at_work();
+        let hand = m.manipulator().hand_of(at_work);
+        let gap_m = disc.finger_gap_m(settings.gap_m.min(hand.max_gap_m()));
         let tips = Fingertips { beyond_tool: hand.tip_beyond_tool_m(gap_m), half_width: hand.tip_half_width_m() };
         let contact = RimContact::new(disc.radius_m, gap_m, tips).map_err(|_| Infeasible::NoContact)?;
         let top = 2.0 * movable.half_height_m;
         let least_tips_m = settings.fingertip_clearance_m;
         let heights = PushHeights { tips: least_tips_m.max(TIPS_AT * top), top };
-        let ties = m.manipulator().hand_ties();
+        let ties = m.manipulator().hand_ties_of(at_work);
         let pushable = Self { object, on, surface, pose, gap_m, contact, disc, heights, least_tips_m, ties };
         let is_beside = |stance: &HandStance| pushable.heights_of(stance).is_some();
         // The fingertips would pass above it.

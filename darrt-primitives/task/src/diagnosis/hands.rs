@@ -329,9 +329,9 @@ fn draw<'a, M: Manipulator>(
 ) -> Option<(Grasp, &'a dyn GraspFamily)> {
     let count = movable.grasps.len();
     let family = movable.grasps.get(if count > 0 { rng.random_range(0..count) } else { 0 })?;
-    let mut grasp = drawn_grasp(m, &**family, rng)?;
+    let mut grasp = drawn_grasp(m, 0, &**family, rng)?;
     grasp.open_gap_m = grasp.open_gap_m.min(m.manipulator().hand().max_gap_m());
-    m.hold(movable, &**family, &grasp).ok()?;
+    m.hold(0, movable, &**family, &grasp).ok()?;
     Some((grasp, &**family))
 }
 
@@ -487,7 +487,7 @@ impl<M: Manipulator> Ends<'_, '_, M> {
     }
 
     fn held(&self, case: &Case<'_>) -> Option<Held> {
-        let hold = self.m().hold(self.movable, case.family, &case.grasp).ok()?;
+        let hold = self.m().hold(0, self.movable, case.family, &case.grasp).ok()?;
         let tool_from_object = case.grasp.object_from_tool.inverse();
         Some(Held { object: self.id, tool_from_object, max_tilt_rad: hold.max_tilt_rad })
     }

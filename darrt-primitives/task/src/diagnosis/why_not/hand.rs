@@ -127,7 +127,7 @@ impl<M: Manipulator> Asked<'_, M> {
             let drawn = (0..GRASPS).map(|draw| family.sample(&mut stream(0, index, draw, Purpose::Goal)));
             for mut grasp in family.grid().into_iter().chain(drawn) {
                 grasp.open_gap_m = grasp.open_gap_m.min(self.m().manipulator().hand().max_gap_m());
-                if self.m().hold(movable, &**family, &grasp).is_ok() {
+                if self.m().hold(0, movable, &**family, &grasp).is_ok() {
                     let (away_m, turned_rad) = apart(&object_from_tool, &grasp.object_from_tool);
                     grasps.push((away_m + METRES_PER_RADIAN * turned_rad, grasp, &**family));
                 }
