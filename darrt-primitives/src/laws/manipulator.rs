@@ -5,7 +5,7 @@ use darrt_core::laws::watch::watched;
 use darrt_core::random::{Purpose, Stream, stream};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, JointVector as _, Manipulator};
 use crate::mobile_arm_space::MobileArmSpace;
 
 mod description;
@@ -16,6 +16,7 @@ mod line;
 mod links;
 mod pairs;
 mod reaches;
+mod several;
 mod ties;
 mod travel;
 mod turn;
@@ -136,12 +137,29 @@ pub const TIES: &str = "manipulator.ties: where the hand gets to, it is tilted a
 pub const TIES_ALL: &str = "manipulator.ties-all: hand_ties tells a tilt and a height that no joint changes";
 /// Turns.
 pub const TURN: &str = "manipulator.turn: a pose turned by what turn_to_reach says is reached, in at least half of the cases, and what it says is an angle of a turn at most";
+/// Whose link.
+pub const HANDS_LINKS: &str =
+    "manipulator.hands-links: hand_of_link names a hand that there is, and every hand has fingers of its own";
+/// One arm at a time.
+pub const HANDS_INVERSE: &str = "manipulator.hands-inverse: inverse_from and inverse_near keep the hand at work, and joints that do not move it stay";
+/// Out of the way.
+pub const HANDS_OTHERS: &str = "manipulator.hands-others: with_others_at leaves the hand at work where it is, and puts joints that do not move it as in the posture";
+/// Whichever works.
+pub const HANDS_IDLE: &str = "manipulator.hands-idle: with the idle gap, to which every hand can be opened, all links stand alike whichever hand is at work";
+/// The gap is that of one hand.
+pub const HANDS_GAP: &str = "manipulator.hands-gap: the gap opens the hand at work and no other";
+
 /// Turns are of use.
 pub const TURN_FINDS: &str = "manipulator.turn-finds: for an arm of fewer than six joints that does not drive, enough of the poses that it reaches are reached or turned to reach, whichever way they are turned";
 
 /// The laws of this file.
 pub const LAWS: &[&str] = &[
     VECTOR,
+    HANDS_LINKS,
+    HANDS_INVERSE,
+    HANDS_OTHERS,
+    HANDS_IDLE,
+    HANDS_GAP,
     TIES,
     TIES_ALL,
     TURN,
@@ -223,7 +241,8 @@ impl Default for ManipulatorClaims {
     }
 }
 
-/// All laws of a robot, for two configurations within its limits and two openings of the hand (metres).
+/// All laws of a robot, for two configurations within its limits and two openings of the hand (metres). Of a robot with several
+/// hands they are about the one that is at work in the first configuration: run it for each.
 ///
 /// # Errors
 /// The first law that is [`Broken`], with the link, joint or function at fault.
@@ -237,7 +256,10 @@ pub fn check_manipulator<M: Manipulator>(
     let about = || format!("check_manipulator(&robot, [&{a:?}, &{b:?}], {gaps_m:?}, {seed}, &{claims:?})");
     let check = || {
         description::check(robot)?;
-        let trial = Trial { robot, space: space_of(robot)?, a, b, gaps_m, seed, claims };
+        let hand = a.arm.hand_at_work();
+        let b = &Configuration { arm: b.arm.with_hand_at_work(hand), ..*b };
+        let trial = Trial { robot, space: space_of(robot)?, hand, a, b, gaps_m, seed, claims };
+        trial.hands()?;
         let told = trial.told();
         trial.tells_the_same(&told)?;
         trial.links()?;
@@ -260,6 +282,8 @@ pub fn check_manipulator<M: Manipulator>(
 struct Trial<'a, M: Manipulator> {
     robot: &'a M,
     space: MobileArmSpace<M::Joints>,
+    /// The one at work.
+    hand: usize,
     a: &'a Configuration<M::Joints>,
     b: &'a Configuration<M::Joints>,
     gaps_m: [f64; 2],
@@ -278,6 +302,16 @@ impl<M: Manipulator> Trial<'_, M> {
         poses
     }
 
+    /// With the hand at work that is asked about.
+    fn at_work(&self, q: Configuration<M::Joints>) -> Configuration<M::Joints> {
+        Configuration { arm: q.arm.with_hand_at_work(self.hand), ..q }
+    }
+
+    /// A configuration for a pose of the hand.
+    fn inverse_of(&self, base: &[f64; 3], tool: &Isometry3<f64>, attempt: u64) -> Option<M::Joints> {
+        self.robot.inverse_from(&self.a.arm, base, tool, &mut self.rng(attempt))
+    }
+
     fn link_name(&self, link: usize) -> &str {
         self.robot.links().get(link).map_or("link", |l| &*l.body.name)
     }
@@ -287,6 +321,12 @@ impl<M: Manipulator> Trial<'_, M> {
 fn space_of<M: Manipulator>(robot: &M) -> Result<MobileArmSpace<M::Joints>, Broken> {
     MobileArmSpace::new([-1e3; 2], [1e3; 2], robot.limits(), robot.joint_weights_m())
         .map_err(|error| Broken::new(COUNTS, error.to_string(), "limits and weights that make a space"))
+}
+
+/// How many joints can move, and move the hand at work in `q` if there are others.
+fn joints_of_hand<M: Manipulator>(robot: &M, q: &Configuration<M::Joints>) -> usize {
+    let movable = robot.limits().iter().enumerate().filter(|(_, limit)| limit.upper > limit.lower);
+    movable.filter(|(joint, _)| robot.hands() < 2 || several::moves_hand(robot, q, *joint)).count()
 }
 
 /// The base's frame in the world.

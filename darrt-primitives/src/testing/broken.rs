@@ -1,7 +1,7 @@
 //! Robots, Jacobians and table-top instances that are wrong on purpose, each in the way people really get it wrong, and
 //! each with the law that must reject it and its honest twin: the laws of [`laws`](crate::laws) are themselves tested.
 //!
-//! The robots are a [`Gantry`](super::gantry::Gantry) or a [`Crane`](super::crane::Crane) with one function changed, the instances what the actions do at
+//! The robots are a [`Gantry`](super::gantry::Gantry), a [`Crane`](super::crane::Crane) or [`Twins`](super::twins::Twins) with one function changed, the instances what the actions do at
 //! the [`table`](mod@super::table) with one thing changed.
 
 use std::fmt;
@@ -20,6 +20,7 @@ mod limits;
 mod moments;
 mod pushes;
 mod robots;
+mod several;
 mod tied;
 mod vectors;
 
@@ -38,6 +39,7 @@ pub fn cases() -> Vec<Case> {
         contracts::cases(),
         vectors::cases(),
         tied::cases(),
+        several::cases(),
     ]
     .concat()
 }

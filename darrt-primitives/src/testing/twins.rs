@@ -127,7 +127,8 @@ fn solve(hand: usize, base: &[f64; 3], world_from_tool: &Isometry3<f64>) -> Opti
     if own[3] <= -PI {
         own[3] = PI;
     }
-    if wanted.rotation.angle_to(&base_from_tool(own).rotation) > ROUNDING {
+    let is_down = wanted.rotation.angle_to(&base_from_tool(own).rotation) <= ROUNDING;
+    if !(is_down && own.iter().all(|value| value.is_finite())) {
         return None;
     }
     for (value, limit) in own.iter_mut().zip(LIMITS.iter().skip(hand * OWN)).take(3) {

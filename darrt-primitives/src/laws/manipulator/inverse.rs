@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Translation3};
 
 use super::{
     BASE_FOR, BASE_VARIED, INVERSE_LIMITS, INVERSE_POSE, INVERSE_VARIED, MAY_REACH, NEAR_SELF, PURE, SEEDED, Trial,
-    same_pose,
+    joints_of_hand, same_pose,
 };
 use crate::manipulator::{Configuration, Manipulator};
 use crate::mobile_arm_space::difference;
@@ -36,13 +36,13 @@ impl<M: Manipulator> Trial<'_, M> {
 
     /// Redundancy is drawn: for two poses, many draws are not the same in both.
     fn inverse_varied(&self) -> Result<(), Broken> {
-        let movable = self.robot.limits().iter().filter(|limit| limit.upper > limit.lower).count();
+        let movable = joints_of_hand(self.robot, self.a);
         if movable <= DETERMINED {
             return Ok(());
         }
         let is_varied = |q: &Configuration<M::Joints>| {
             let tool = self.robot.world_from_tool(q);
-            let mut found = (0..VARIED_DRAWS).filter_map(|i| self.robot.inverse(&q.base, &tool, &mut self.rng(i)));
+            let mut found = (0..VARIED_DRAWS).filter_map(|i| self.inverse_of(&q.base, &tool, i));
             let Some(first) = found.next() else { return true };
             let mut count = 1;
             found.any(|other| {
@@ -56,12 +56,17 @@ impl<M: Manipulator> Trial<'_, M> {
     }
 
     pub(super) fn reaches(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> Result<(), Broken> {
-        ensure(MAY_REACH, self.robot.may_reach(base, tool), || "false".to_owned(), "true: a configuration reaches it")
+        ensure(
+            MAY_REACH,
+            self.robot.may_reach_with(self.hand, base, tool),
+            || "false".to_owned(),
+            "true: a configuration reaches it",
+        )
     }
 
     /// Solutions of several draws, each of them twice.
     pub(super) fn drawn(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> Result<(), Broken> {
-        let draw = |attempt| self.robot.inverse(base, tool, &mut self.rng(attempt));
+        let draw = |attempt| self.inverse_of(base, tool, attempt);
         for attempt in 0..DRAWS {
             let found = draw(attempt);
             let _ = draw(attempt + 1);
@@ -90,7 +95,7 @@ impl<M: Manipulator> Trial<'_, M> {
     }
 
     fn base_for(&self, tool: &Isometry3<f64>) -> Result<(), Broken> {
-        let draw = |attempt| self.robot.base_for(tool, &mut self.rng(attempt));
+        let draw = |attempt| self.robot.base_for_hand(self.hand, tool, &mut self.rng(attempt));
         let base = draw(0);
         let is_place = base.iter().all(|x| x.is_finite()) && base[2].abs() <= std::f64::consts::PI;
         ensure(BASE_FOR, is_place, || format!("{base:?}"), "finite, yaw in [-pi, pi]")?;
@@ -105,7 +110,7 @@ impl<M: Manipulator> Trial<'_, M> {
         }
         // One that stands where it stands wherever its hand shall be is bolted down.
         let elsewhere = Translation3::new(1.0, 1.0, 0.0) * tool;
-        let is_bolted = self.robot.base_for(&elsewhere, &mut self.rng(0)) == base;
+        let is_bolted = self.robot.base_for_hand(self.hand, &elsewhere, &mut self.rng(0)) == base;
         ensure(BASE_VARIED, differs || is_bolted, || format!("{BASES} times {base:?}"), "different ones")?;
         self.drawn(&base, tool)
     }

@@ -78,12 +78,15 @@ impl<M: Manipulator> Trial<'_, M> {
         let travel = || self.robot.travel_m(self.a, self.b, 0.1);
         equal(PURE, &travel(), &travel()).map_err(|broken| broken.of("travel_m"))?;
         let base = self.b.base;
-        let reach = || self.robot.may_reach(&base, &tool);
+        let reach = || self.robot.may_reach_with(self.hand, &base, &tool);
         equal(PURE, &reach(), &reach()).map_err(|broken| broken.of("may_reach"))
     }
 
-    fn group(&self, link: usize) -> Option<LinkGroup> {
-        self.robot.links().get(link).map(|l| l.group)
+    /// Of the links of a hand those of the one at work; the others move with their arm.
+    pub(super) fn group(&self, link: usize) -> Option<LinkGroup> {
+        let group = self.robot.links().get(link).map(|l| l.group)?;
+        let is_of_hand = matches!(group, LinkGroup::Hand | LinkGroup::Finger);
+        Some(if is_of_hand && self.robot.hand_of_link(link) != self.hand { LinkGroup::Arm } else { group })
     }
 }
 

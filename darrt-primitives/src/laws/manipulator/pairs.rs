@@ -66,9 +66,10 @@ impl<M: Manipulator> Trial<'_, M> {
             let q = match i {
                 0 => *self.a,
                 1 => *self.b,
-                _ => self.space.sample(&mut rng),
+                _ => self.at_work(self.space.sample(&mut rng)),
             };
-            let poses = self.poses(&Configuration { base: [0.0; 3], ..q }, self.robot.hand().max_gap_m() * 0.5);
+            let poses =
+                self.poses(&Configuration { base: [0.0; 3], ..q }, self.robot.hand_of(self.hand).max_gap_m() * 0.5);
             let bodies: Vec<_> = robot
                 .links()
                 .iter()
