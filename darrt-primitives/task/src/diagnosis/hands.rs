@@ -14,6 +14,7 @@ use darrt_core::random::{Purpose, stream};
 use darrt_core::space::ComponentSpace as _;
 use darrt_core::state::ObjectId;
 use darrt_core::validity::{Blame, BlockKind};
+use darrt_primitives::action::at_work::at_work;
 use darrt_primitives::action::line::{follow, follow_in_room, moved, room_for_hand};
 use darrt_primitives::action::pick::drawn_grasp;
 use darrt_primitives::action::place::ON_SURFACE_M;
@@ -22,7 +23,7 @@ use darrt_primitives::action::turned::turned;
 use darrt_primitives::goal::{Grip, TabletopGoal};
 use darrt_primitives::grasp::rim::{rim_is_graspable, rim_overhangs};
 use darrt_primitives::grasp::{Grasp, GraspFamily, GraspKind};
-use darrt_primitives::manipulator::{Configuration, Manipulator};
+use darrt_primitives::manipulator::{Configuration, JointVector as _, Manipulator};
 use darrt_primitives::mode::{Contacts, Held, TouchReason};
 use darrt_primitives::object_space::upright;
 use darrt_primitives::tabletop::{Movable, Tabletop, TabletopState};
@@ -168,7 +169,9 @@ impl<'a, M: Manipulator> Look<'a, M> {
         {
             let rng = &mut stream(0, 0, tried, Purpose::Attempt);
             tried += 1;
-            let end = match (draw(self.m, movable, rng), pose(rng)) {
+            // Any hand will do.
+            let state = &*at_work(self.m, state, rng);
+            let end = match (draw(self.m, state.robot.arm.hand_at_work(), movable, rng), pose(rng)) {
                 (Some((grasp, family)), Some(pose)) => {
                     let case = Case { grasp, family, pose };
                     let mut asked = Ends { look: self, state, id, movable, rng, bases: 0 };
@@ -297,15 +300,17 @@ impl<'a, M: Manipulator> Look<'a, M> {
     /// Does a base reach `tool`? `left`: how often the arm may still be asked.
     fn is_reached(&self, state: &TabletopState<M>, tool: &Isometry3<f64>, rng: &mut dyn Rng, left: &Cell<u32>) -> bool {
         let robot = self.m.manipulator();
+        let state = &*at_work(self.m, state, rng);
+        let hand = state.robot.arm.hand_at_work();
         (0..self.bases()).any(|_| {
             let base = self.base_for(state, tool, rng);
             let q = Configuration { base, arm: state.robot.arm };
-            robot.may_reach(&base, tool)
+            robot.may_reach_with(hand, &base, tool)
                 && self.m.robot().base().contains(&base)
                 && self.m.collision_scene().is_base_clear(robot, &q)
                 && (0..ARMS).any(|_| {
                     left.set(left.get().saturating_sub(1));
-                    left.get() > 0 && robot.inverse(&base, tool, rng).is_some()
+                    left.get() > 0 && robot.inverse_from(&state.robot.arm, &base, tool, rng).is_some()
                 })
         })
     }
@@ -314,7 +319,7 @@ impl<'a, M: Manipulator> Look<'a, M> {
     fn base_for(&self, state: &TabletopState<M>, tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] {
         // The hand is taken to be empty before, and full behind.
         if self.m.settings().drives.contains(&true) {
-            self.m.manipulator().base_for(tool, rng)
+            self.m.manipulator().base_for_hand(state.robot.arm.hand_at_work(), tool, rng)
         } else {
             state.robot.base
         }
@@ -324,14 +329,15 @@ impl<'a, M: Manipulator> Look<'a, M> {
 /// A grasp of the object that holds it, if there is one.
 fn draw<'a, M: Manipulator>(
     m: &Tabletop<M>,
+    hand: usize,
     movable: &'a Movable,
     rng: &mut dyn Rng,
 ) -> Option<(Grasp, &'a dyn GraspFamily)> {
     let count = movable.grasps.len();
     let family = movable.grasps.get(if count > 0 { rng.random_range(0..count) } else { 0 })?;
-    let mut grasp = drawn_grasp(m, 0, &**family, rng)?;
-    grasp.open_gap_m = grasp.open_gap_m.min(m.manipulator().hand().max_gap_m());
-    m.hold(0, movable, &**family, &grasp).ok()?;
+    let mut grasp = drawn_grasp(m, hand, &**family, rng)?;
+    grasp.open_gap_m = grasp.open_gap_m.min(m.manipulator().hand_of(hand).max_gap_m());
+    m.hold(hand, movable, &**family, &grasp).ok()?;
     Some((grasp, &**family))
 }
 
@@ -353,6 +359,11 @@ impl<M: Manipulator> Ends<'_, '_, M> {
 
     fn blamed(&self, stage: Stage, blame: Option<Blame>) -> End {
         End { stage, body: blame.map(|blame| culprit(self.look.m, self.id, &blame)) }
+    }
+
+    /// The one that is asked about.
+    fn hand(&self) -> usize {
+        self.state.robot.arm.hand_at_work()
     }
 
     /// Whether the object itself meets something where it is in `state`, and what.
@@ -417,7 +428,7 @@ impl<M: Manipulator> Ends<'_, '_, M> {
             return Err(End::at(Stage::Hold));
         };
         let open_m = case.grasp.closed_gap_m + m.settings().place.release_opening_m;
-        let released = holding.released_on(surface, open_m.min(m.manipulator().hand().max_gap_m()));
+        let released = holding.released_on(surface, open_m.min(m.manipulator().hand_of(self.hand()).max_gap_m()));
         let Some(released) = released else { return Err(End::at(Stage::Hold)) };
         let standing = m.surface(surface).map_or(case.pose.translation.z, |s| s.height() + self.movable.half_height_m);
         let (yaw, at) = (case.pose.rotation.euler_angles().2, case.pose.translation.vector);
@@ -464,7 +475,14 @@ impl<M: Manipulator> Ends<'_, '_, M> {
 
     /// Where the object is, turned as the arm wants it if it looks alike from all sides.
     fn turned(&mut self, case: &Case<'_>, pose: &Isometry3<f64>) -> Isometry3<f64> {
-        turned(self.look.m, self.id, &self.state.robot.base, pose, &case.grasp.object_from_tool, self.rng)
+        turned(
+            self.look.m,
+            (self.id, self.hand()),
+            &self.state.robot.base,
+            pose,
+            &case.grasp.object_from_tool,
+            self.rng,
+        )
     }
 
     fn check_overhang(&self, case: &Case<'_>) -> Result<(), End> {
@@ -487,7 +505,7 @@ impl<M: Manipulator> Ends<'_, '_, M> {
     }
 
     fn held(&self, case: &Case<'_>) -> Option<Held> {
-        let hold = self.m().hold(0, self.movable, case.family, &case.grasp).ok()?;
+        let hold = self.m().hold(self.hand(), self.movable, case.family, &case.grasp).ok()?;
         let tool_from_object = case.grasp.object_from_tool.inverse();
         Some(Held { object: self.id, tool_from_object, max_tilt_rad: hold.max_tilt_rad })
     }
@@ -513,12 +531,12 @@ impl<M: Manipulator> Ends<'_, '_, M> {
         for _ in 0..self.look.bases() {
             let base = self.look.base_for(self.state, tool, self.rng);
             self.bases += 1;
-            if !robot.may_reach(&base, tool) {
+            if !robot.may_reach_with(self.hand(), &base, tool) {
                 continue;
             }
             let mut is_free = None;
             for _ in 0..ARMS {
-                let Some(arm) = robot.inverse(&base, tool, self.rng) else { break };
+                let Some(arm) = robot.inverse_from(&self.state.robot.arm, &base, tool, self.rng) else { break };
                 let q = Configuration { base, arm };
                 if !*is_free.get_or_insert_with(|| self.is_free(&q).map_err(&mut note).is_ok()) {
                     break;

@@ -24,8 +24,8 @@ macro_rules! shipped {
     };
 }
 
-const ALL: [Shipped; 4] =
-    [shipped!("mobile-arm"), shipped!("panda-arm"), shipped!("planar-arm"), shipped!("table-arm")];
+const ALL: [Shipped; 5] =
+    [shipped!("mobile-arm"), shipped!("panda-arm"), shipped!("planar-arm"), shipped!("table-arm"), shipped!("two-arm")];
 
 /// All of them.
 pub fn all() -> &'static [Shipped] {
