@@ -3,9 +3,11 @@
 use darrt_core::laws::Broken;
 use darrt_core::laws::watch::watched;
 use darrt_core::random::{Purpose, Stream, stream};
+use darrt_core::space::ComponentSpace as _;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use rand::Rng;
 
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, Hand, JointVector, LinkGroup, Manipulator};
 use crate::mobile_arm_space::MobileArmSpace;
 
 mod description;
@@ -223,7 +225,8 @@ impl Default for ManipulatorClaims {
     }
 }
 
-/// All laws of a robot, for two configurations within its limits and two openings of the hand (metres).
+/// All laws of a robot, for two configurations within its limits and two openings of the hand (metres). Of a robot with several hands
+/// it is about the one that is at work in the first configuration, and takes that to be at work in the second too.
 ///
 /// # Errors
 /// The first law that is [`Broken`], with the link, joint or function at fault.
@@ -237,6 +240,7 @@ pub fn check_manipulator<M: Manipulator>(
     let about = || format!("check_manipulator(&robot, [&{a:?}, &{b:?}], {gaps_m:?}, {seed}, &{claims:?})");
     let check = || {
         description::check(robot)?;
+        let b = &with_hand(b, a.arm.hand_at_work());
         let trial = Trial { robot, space: space_of(robot)?, a, b, gaps_m, seed, claims };
         let told = trial.told();
         trial.tells_the_same(&told)?;
@@ -272,6 +276,36 @@ impl<M: Manipulator> Trial<'_, M> {
         stream(self.seed, attempt, 0, Purpose::Extend)
     }
 
+    /// The hand that is at work.
+    fn at_work(&self) -> usize {
+        self.a.arm.hand_at_work()
+    }
+
+    fn hand_facts(&self) -> &dyn Hand {
+        self.robot.hand_of(self.at_work())
+    }
+
+    /// Is a link one of another hand, which is not at work?
+    fn is_idle(&self, link: usize) -> bool {
+        let group = self.robot.links().get(link).map(|link| link.group);
+        let is_of_hand = matches!(group, Some(LinkGroup::Hand | LinkGroup::Finger));
+        is_of_hand && self.robot.hand_of_link(link) != self.at_work()
+    }
+
+    /// Some arm configuration of the hand at work, the other arms as in the first configuration.
+    fn solved(&self, base: &[f64; 3], tool: &Isometry3<f64>, rng: &mut dyn Rng) -> Option<M::Joints> {
+        self.robot.inverse_from(&self.a.arm, base, tool, rng)
+    }
+
+    fn may_reach(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> bool {
+        self.robot.may_reach_with(self.at_work(), base, tool)
+    }
+
+    /// A configuration anywhere.
+    fn anywhere(&self, rng: &mut Stream) -> Configuration<M::Joints> {
+        with_hand(&self.space.sample(rng), self.at_work())
+    }
+
     fn poses(&self, q: &Configuration<M::Joints>, gap_m: f64) -> Vec<Isometry3<f64>> {
         let mut poses = vec![Isometry3::identity(); self.robot.links().len()];
         self.robot.link_poses(q, gap_m, &mut poses);
@@ -281,6 +315,11 @@ impl<M: Manipulator> Trial<'_, M> {
     fn link_name(&self, link: usize) -> &str {
         self.robot.links().get(link).map_or("link", |l| &*l.body.name)
     }
+}
+
+/// The same configuration with another hand at work.
+fn with_hand<J: JointVector>(q: &Configuration<J>, hand: usize) -> Configuration<J> {
+    Configuration { arm: q.arm.with_hand_at_work(hand), ..*q }
 }
 
 /// The space of a robot's configurations, its base anywhere within a kilometre.

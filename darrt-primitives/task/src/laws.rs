@@ -51,8 +51,7 @@ pub const ROLES: &str = "task-robot.roles: arm joints are joints of the descript
 /// Pairs.
 pub const PAIRS: &str = "task-robot.pairs: the pairs of links that the robot keeps apart are among those of the facts";
 /// Numbers.
-pub const SAME: &str =
-    "task-robot.same: pads, grip, payload, push force and drives of the facts are those of the robot";
+pub const SAME: &str = "task-robot.same: pads, grip, payload, push force and drives of the facts are those of the robot, of two arms the least payload and push force";
 
 /// Names of a primitive.
 pub const NAMED: &str = "task-primitive.named: it has a name without blanks, is known by the id that it is given, and needs other primitives only, each once";

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use darrt_core::laws::{Broken, ensure, equal};
 
 use super::{COUNTS, HAND, LIMITS, LINKS, PAIRS, STRENGTH};
-use crate::manipulator::{JointVector, Manipulator};
+use crate::manipulator::{Hand, JointVector, Manipulator};
 use crate::push::GRAVITY;
 
 /// A payload weighs at most so many times the force of the grip.
@@ -29,8 +29,10 @@ pub(super) fn check<M: Manipulator>(robot: &M) -> Result<(), Broken> {
             .map_err(|broken| broken.of(format_args!("joint {joint}")))?;
     }
     links(robot)?;
-    hand(robot)?;
-    strength(robot)
+    (0..robot.hands()).try_for_each(|number| {
+        let facts = robot.hand_of(number);
+        hand(facts).and_then(|()| strength(robot, facts))
+    })
 }
 
 fn links<M: Manipulator>(robot: &M) -> Result<(), Broken> {
@@ -51,8 +53,7 @@ fn links<M: Manipulator>(robot: &M) -> Result<(), Broken> {
 }
 
 /// Infinite is never the limit; nothing and not a number are no strength.
-fn strength<M: Manipulator>(robot: &M) -> Result<(), Broken> {
-    let hand = robot.hand();
+fn strength<M: Manipulator>(robot: &M, hand: &dyn Hand) -> Result<(), Broken> {
     let pad = hand.pad_length_m();
     ensure(STRENGTH, pad.is_finite() && pad > 0.0, || format!("pads of {pad:?} m"), "a finite positive length")?;
     let all = [("grip", hand.grip_force_n()), ("payload", robot.payload_kg()), ("push force", robot.push_force_n())];
@@ -66,8 +67,7 @@ fn strength<M: Manipulator>(robot: &M) -> Result<(), Broken> {
     ensure(STRENGTH, fits, text, "a weight of at most a hundred times the grip")
 }
 
-fn hand<M: Manipulator>(robot: &M) -> Result<(), Broken> {
-    let hand = robot.hand();
+fn hand(hand: &dyn Hand) -> Result<(), Broken> {
     let widest = hand.max_gap_m();
     ensure(
         HAND,

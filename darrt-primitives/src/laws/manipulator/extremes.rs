@@ -39,7 +39,7 @@ impl<M: Manipulator> Trial<'_, M> {
         let turned = UnitQuaternion::new_unchecked(Quaternion::new(f64::NAN, 0.0, 0.0, 1.0));
         for pose in [nowhere, Isometry3::from_parts(tool.translation, turned)] {
             entering("inverse");
-            let found = self.robot.inverse(&self.a.base, &pose, &mut self.rng(0));
+            let found = self.solved(&self.a.base, &pose, &mut self.rng(0));
             ensure(NAN, found.is_none(), || format!("{found:?}"), "no configuration").map_err(|b| b.of("inverse"))?;
             entering("inverse_near");
             let found = self.robot.inverse_near(&self.a.base, &pose, &self.a.arm);
@@ -48,11 +48,11 @@ impl<M: Manipulator> Trial<'_, M> {
         }
         entering("turn_to_reach");
         let centre = Point2::new(f64::NAN, 0.0);
-        let turn = self.robot.turn_to_reach(&self.a.base, &nowhere, &centre, &mut self.rng(0));
+        let turn = self.robot.turn_to_reach_with(self.at_work(), &self.a.base, &nowhere, &centre, &mut self.rng(0));
         ensure(NAN, turn.is_none_or(f64::is_finite), || format!("{turn:?}"), "no turn, or some angle")
             .map_err(|broken| broken.of("turn_to_reach"))?;
         entering("may_reach");
-        let may = self.robot.may_reach(&self.a.base, &nowhere);
+        let may = self.may_reach(&self.a.base, &nowhere);
         ensure(NAN, !may, || "true".to_owned(), "false").map_err(|broken| broken.of("may_reach"))?;
         // It only has to come back.
         entering("world_from_tool");
@@ -65,7 +65,7 @@ impl<M: Manipulator> Trial<'_, M> {
             let mut tool = self.robot.world_from_tool(self.a);
             tool.translation.vector += FAR_M * direction;
             entering("may_reach");
-            let may = self.robot.may_reach(&self.a.base, &tool);
+            let may = self.may_reach(&self.a.base, &tool);
             ensure(MAY_NOT_REACH, !may, || format!("true for {:?}", tool.translation.vector.as_slice()), "false")?;
         }
         Ok(())

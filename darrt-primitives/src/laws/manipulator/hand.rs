@@ -42,9 +42,11 @@ impl<M: Manipulator> Trial<'_, M> {
         self.weights()
     }
 
+    /// The links of a group, but for those of hands that are not at work.
     fn links_of(&self, group: LinkGroup) -> impl Iterator<Item = usize> + '_ {
         let links = self.robot.links().iter().enumerate();
-        links.filter(move |(_, link)| link.group == group).map(|(number, _)| number)
+        let of_group = links.filter(move |(_, link)| link.group == group).map(|(number, _)| number);
+        of_group.filter(|link| !self.is_idle(*link))
     }
 
     /// Every link of the arm stands elsewhere when every joint does.
@@ -84,7 +86,7 @@ impl<M: Manipulator> Trial<'_, M> {
             let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| [low.min(y), high.max(y)]);
             (!points.is_empty()).then_some(high - low)
         };
-        let widest_m = self.robot.hand().max_gap_m();
+        let widest_m = self.hand_facts().max_gap_m();
         for gap_m in [self.gaps_m[0], self.gaps_m[1], widest_m] {
             let Some(span) = span_m(gap_m) else { return Ok(()) };
             let text = || format!("links that span {span:?} m with a gap of {gap_m:?} m");
@@ -100,7 +102,7 @@ impl<M: Manipulator> Trial<'_, M> {
     fn tips(&self) -> Result<(), Broken> {
         for gap_m in self.gaps_m {
             let reach_m = self.finger_corners(gap_m).iter().map(|point| point.x).fold(f64::NEG_INFINITY, f64::max);
-            let tips_m = self.robot.hand().tip_beyond_tool_m(gap_m);
+            let tips_m = self.hand_facts().tip_beyond_tool_m(gap_m);
             let holds = reach_m.is_infinite() || (reach_m - tips_m).abs() <= TIP_SLACK_M;
             let text = || format!("tips {tips_m:?} m beyond the tool, links {reach_m:?} m, gap {gap_m:?} m");
             ensure(TIPS, holds, text, "the same, within 5 cm")?;
@@ -119,7 +121,7 @@ impl<M: Manipulator> Trial<'_, M> {
             let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
             high - low
         };
-        let hand = self.robot.hand();
+        let hand = self.hand_facts();
         let (width_m, links_m) = (2.0 * hand.tip_half_width_m(), extent(2));
         let text = || format!("tips {width_m:?} m wide, links {links_m:?} m");
         let is_near = (1.0 / WIDTH_FACTOR..=WIDTH_FACTOR).contains(&(width_m / links_m));
@@ -131,7 +133,7 @@ impl<M: Manipulator> Trial<'_, M> {
 
     /// The fingers on both sides of the tool are as far from it.
     fn centred(&self) -> Result<(), Broken> {
-        for gap_m in [self.gaps_m[0], self.gaps_m[1], self.robot.hand().max_gap_m()] {
+        for gap_m in [self.gaps_m[0], self.gaps_m[1], self.hand_facts().max_gap_m()] {
             let points = self.finger_corners(gap_m);
             for (axis, slack_m) in [(1, CENTRE_SLACK_M), (2, 0.0)] {
                 let all = points.iter().map(|point| point[axis]);
@@ -149,7 +151,7 @@ impl<M: Manipulator> Trial<'_, M> {
 
     /// Where something is grasped there is room for it.
     fn clear(&self) -> Result<(), Broken> {
-        let hand = self.robot.hand();
+        let hand = self.hand_facts();
         let gap_m = hand.max_gap_m();
         let tip_m = hand.tip_beyond_tool_m(gap_m);
         let (from_m, to_m) = (tip_m - 0.5 * hand.pad_length_m(), tip_m + AHEAD_M);

@@ -16,6 +16,8 @@ const DRAWS: u64 = 4;
 const DETERMINED: usize = 6;
 /// How many solutions are drawn until they are the same for ever.
 const VARIED_DRAWS: u64 = 24;
+/// Joint travel by which it is seen what a joint moves, radians or metres.
+const SMALL: f64 = 1e-3;
 /// And how many bases.
 const BASES: u64 = 24;
 
@@ -36,13 +38,15 @@ impl<M: Manipulator> Trial<'_, M> {
 
     /// Redundancy is drawn: for two poses, many draws are not the same in both.
     fn inverse_varied(&self) -> Result<(), Broken> {
-        let movable = self.robot.limits().iter().filter(|limit| limit.upper > limit.lower).count();
+        let limits = self.robot.limits().iter().enumerate();
+        let movable = limits.filter(|(joint, limit)| limit.upper > limit.lower && self.moves_hand(*joint)).count();
         if movable <= DETERMINED {
             return Ok(());
         }
         let is_varied = |q: &Configuration<M::Joints>| {
             let tool = self.robot.world_from_tool(q);
-            let mut found = (0..VARIED_DRAWS).filter_map(|i| self.robot.inverse(&q.base, &tool, &mut self.rng(i)));
+            let mut found =
+                (0..VARIED_DRAWS).filter_map(|i| self.robot.inverse_from(&q.arm, &q.base, &tool, &mut self.rng(i)));
             let Some(first) = found.next() else { return true };
             let mut count = 1;
             found.any(|other| {
@@ -55,13 +59,20 @@ impl<M: Manipulator> Trial<'_, M> {
         ensure(INVERSE_VARIED, holds, text, "different ones: redundancy is drawn")
     }
 
+    /// Does a joint move the hand at work? Of a robot with one hand each is taken to.
+    fn moves_hand(&self, joint: usize) -> bool {
+        let mut moved = *self.a;
+        moved.arm.as_mut().iter_mut().skip(joint).take(1).for_each(|value| *value += SMALL);
+        self.robot.hands() == 1 || self.robot.world_from_tool(&moved) != self.robot.world_from_tool(self.a)
+    }
+
     pub(super) fn reaches(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> Result<(), Broken> {
-        ensure(MAY_REACH, self.robot.may_reach(base, tool), || "false".to_owned(), "true: a configuration reaches it")
+        ensure(MAY_REACH, self.may_reach(base, tool), || "false".to_owned(), "true: a configuration reaches it")
     }
 
     /// Solutions of several draws, each of them twice.
     pub(super) fn drawn(&self, base: &[f64; 3], tool: &Isometry3<f64>) -> Result<(), Broken> {
-        let draw = |attempt| self.robot.inverse(base, tool, &mut self.rng(attempt));
+        let draw = |attempt| self.solved(base, tool, &mut self.rng(attempt));
         for attempt in 0..DRAWS {
             let found = draw(attempt);
             let _ = draw(attempt + 1);
@@ -90,7 +101,7 @@ impl<M: Manipulator> Trial<'_, M> {
     }
 
     fn base_for(&self, tool: &Isometry3<f64>) -> Result<(), Broken> {
-        let draw = |attempt| self.robot.base_for(tool, &mut self.rng(attempt));
+        let draw = |attempt| self.robot.base_for_hand(self.at_work(), tool, &mut self.rng(attempt));
         let base = draw(0);
         let is_place = base.iter().all(|x| x.is_finite()) && base[2].abs() <= std::f64::consts::PI;
         ensure(BASE_FOR, is_place, || format!("{base:?}"), "finite, yaw in [-pi, pi]")?;
@@ -105,7 +116,7 @@ impl<M: Manipulator> Trial<'_, M> {
         }
         // One that stands where it stands wherever its hand shall be is bolted down.
         let elsewhere = Translation3::new(1.0, 1.0, 0.0) * tool;
-        let is_bolted = self.robot.base_for(&elsewhere, &mut self.rng(0)) == base;
+        let is_bolted = self.robot.base_for_hand(self.at_work(), &elsewhere, &mut self.rng(0)) == base;
         ensure(BASE_VARIED, differs || is_bolted, || format!("{BASES} times {base:?}"), "different ones")?;
         self.drawn(&base, tool)
     }

@@ -40,7 +40,7 @@ impl<M: Manipulator> Trial<'_, M> {
     fn gap_moves_fingers(&self, q: &Configuration<M::Joints>) -> Result<(), Broken> {
         let [narrow, wide] = self.gaps_m.map(|gap_m| self.poses(q, gap_m));
         for (link, (narrow, wide)) in narrow.iter().zip(&wide).enumerate() {
-            if self.group(link) != Some(LinkGroup::Finger) {
+            if self.group(link) != Some(LinkGroup::Finger) || self.is_idle(link) {
                 same_pose(GAP, wide, narrow, self.claims.pose).map_err(|broken| broken.of(self.link_name(link)))?;
             }
         }
@@ -55,7 +55,7 @@ impl<M: Manipulator> Trial<'_, M> {
         let [tool_before, tool_after] = [self.a, &there].map(|q| self.robot.world_from_tool(q));
         for (link, (before, after)) in before.iter().zip(&after).enumerate() {
             let rigid_to_tool = || tool_after * (tool_before.inverse() * before);
-            let (law, expected) = match self.group(link) {
+            let (law, expected) = match self.group(link).filter(|_| !self.is_idle(link)) {
                 Some(LinkGroup::Base) => (BASE_LINKS, *before),
                 Some(LinkGroup::Hand) => (HAND_FOLLOWS, rigid_to_tool()),
                 Some(LinkGroup::Finger) => (FINGERS_FOLLOW, rigid_to_tool()),
@@ -78,7 +78,7 @@ impl<M: Manipulator> Trial<'_, M> {
         let travel = || self.robot.travel_m(self.a, self.b, 0.1);
         equal(PURE, &travel(), &travel()).map_err(|broken| broken.of("travel_m"))?;
         let base = self.b.base;
-        let reach = || self.robot.may_reach(&base, &tool);
+        let reach = || self.may_reach(&base, &tool);
         equal(PURE, &reach(), &reach()).map_err(|broken| broken.of("may_reach"))
     }
 

@@ -1,7 +1,6 @@
 //! Are all pairs of links named that can collide?
 
 use darrt_core::laws::{Broken, ensure};
-use darrt_core::space::ComponentSpace;
 use darrt_geom::oracle::{PosedBody, intersections, nearest};
 use nalgebra::Isometry3;
 
@@ -66,9 +65,9 @@ impl<M: Manipulator> Trial<'_, M> {
             let q = match i {
                 0 => *self.a,
                 1 => *self.b,
-                _ => self.space.sample(&mut rng),
+                _ => self.anywhere(&mut rng),
             };
-            let poses = self.poses(&Configuration { base: [0.0; 3], ..q }, self.robot.hand().max_gap_m() * 0.5);
+            let poses = self.poses(&Configuration { base: [0.0; 3], ..q }, self.hand_facts().max_gap_m() * 0.5);
             let bodies: Vec<_> = robot
                 .links()
                 .iter()

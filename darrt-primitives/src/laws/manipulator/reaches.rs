@@ -4,7 +4,7 @@ use darrt_core::laws::{Broken, at_most};
 use darrt_core::random::{Purpose, stream};
 
 use super::{BASE_FINDS, INVERSE_FINDS, TURN_FINDS, turn};
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, JointVector as _, Manipulator};
 
 /// How often a robot claims to find something.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,9 +38,10 @@ pub fn check_reaches<M: Manipulator>(
     for (q, attempt) in configurations.iter().zip(0..) {
         let mut rng = stream(seed, attempt, 0, Purpose::Extend);
         let tool = robot.world_from_tool(q);
-        found += u32::from(robot.inverse(&q.base, &tool, &mut rng).is_some());
-        let base = robot.base_for(&tool, &mut rng);
-        reached += u32::from(robot.may_reach(&base, &tool));
+        found += u32::from(robot.inverse_from(&q.arm, &q.base, &tool, &mut rng).is_some());
+        let hand = q.arm.hand_at_work();
+        let base = robot.base_for_hand(hand, &tool, &mut rng);
+        reached += u32::from(robot.may_reach_with(hand, &base, &tool));
     }
     let share = |count: u32| f64::from(count) / configurations.len().max(1) as f64;
     // A share that is large enough is one whose rest is small enough.

@@ -2,7 +2,6 @@
 
 use darrt_core::laws::watch::entering;
 use darrt_core::laws::{Broken, ensure, equal};
-use darrt_core::space::ComponentSpace;
 use nalgebra::Isometry3;
 
 use super::{PURE, TIES, TIES_ALL, Trial};
@@ -24,7 +23,7 @@ pub(super) type Told = Vec<(&'static str, Vec<u64>)>;
 impl<M: Manipulator> Trial<'_, M> {
     pub(super) fn ties(&self) -> Result<(), Broken> {
         entering("hand_ties");
-        let ties = self.robot.hand_ties();
+        let ties = self.robot.hand_ties_of(self.at_work());
         let length = ties.up_in_tool.map_or(1.0, |up| up.norm());
         ensure(TIES, (length - 1.0).abs() <= UNIT, || format!("an axis of length {length:?}"), "a unit vector")?;
         let text = || format!("{ties:?}");
@@ -53,13 +52,13 @@ impl<M: Manipulator> Trial<'_, M> {
     /// The hand in both configurations and in some that are drawn.
     fn tools(&self) -> Vec<Isometry3<f64>> {
         let mut rng = self.rng(11);
-        let drawn = (0..CONFIGURATIONS).map(|_| Configuration { base: self.a.base, ..self.space.sample(&mut rng) });
+        let drawn = (0..CONFIGURATIONS).map(|_| Configuration { base: self.a.base, ..self.anywhere(&mut rng) });
         [*self.a, *self.b].into_iter().chain(drawn).map(|q| self.robot.world_from_tool(&q)).collect()
     }
 
     pub(super) fn told(&self) -> Told {
-        let (robot, hand) = (self.robot, self.robot.hand());
-        let ties = robot.hand_ties();
+        let (robot, hand) = (self.robot, self.hand_facts());
+        let ties = robot.hand_ties_of(self.at_work());
         let up = ties.up_in_tool.map_or_else(Vec::new, |up| up.iter().copied().collect());
         let tips = self.gaps_m.map(|gap_m| hand.tip_beyond_tool_m(gap_m));
         let limits = robot.limits().iter().flat_map(|limit| [limit.lower, limit.upper]).collect();

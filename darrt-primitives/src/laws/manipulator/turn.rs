@@ -10,7 +10,7 @@ use rand::RngExt;
 
 use super::{SEEDED, TURN, Trial};
 use crate::action::turned::turned_about;
-use crate::manipulator::{Configuration, Manipulator};
+use crate::manipulator::{Configuration, JointVector as _, Manipulator};
 
 /// How often each of the two configurations is turned away.
 const TURNS: u64 = 4;
@@ -41,7 +41,8 @@ impl<M: Manipulator> Trial<'_, M> {
                 let pose = turned_about(&tool, &centre, rng.random_range(-PI..PI));
                 let Some(turn) = self.asked(&q.base, &pose, &centre, attempt)? else { continue };
                 let turned = turned_about(&pose, &centre, turn);
-                let mut draws = (0..DRAWS).map(|draw| self.robot.inverse(&q.base, &turned, &mut self.rng(draw)));
+                let mut draws =
+                    (0..DRAWS).map(|draw| self.robot.inverse_from(&q.arm, &q.base, &turned, &mut self.rng(draw)));
                 answers += 1;
                 reached += u32::from(draws.any(|found| found.is_some()));
             }
@@ -60,7 +61,7 @@ impl<M: Manipulator> Trial<'_, M> {
         attempt: u64,
     ) -> Result<Option<f64>, Broken> {
         entering("turn_to_reach");
-        let ask = |attempt| self.robot.turn_to_reach(base, pose, centre, &mut self.rng(attempt));
+        let ask = |attempt| self.robot.turn_to_reach_with(self.at_work(), base, pose, centre, &mut self.rng(attempt));
         let found = ask(attempt);
         let is_angle = found.is_none_or(|turn| turn.abs() <= TAU);
         ensure(TURN, is_angle, || format!("{found:?}"), "radians, a turn at most")?;
@@ -75,7 +76,9 @@ pub(super) fn found<M: Manipulator>(robot: &M, configurations: &[Configuration<M
     let first = configurations.first()?;
     let tool = robot.world_from_tool(first);
     let elsewhere = Translation3::new(1.0, 1.0, 0.0) * tool;
-    let [here, there] = [&tool, &elsewhere].map(|tool| robot.base_for(tool, &mut stream(seed, 0, 2, Purpose::Extend)));
+    let hand = first.arm.hand_at_work();
+    let [here, there] =
+        [&tool, &elsewhere].map(|tool| robot.base_for_hand(hand, tool, &mut stream(seed, 0, 2, Purpose::Extend)));
     let movable = robot.limits().iter().filter(|limit| limit.upper > limit.lower).count();
     if movable >= FREEDOM || here != there {
         return None;
@@ -85,8 +88,8 @@ pub(super) fn found<M: Manipulator>(robot: &M, configurations: &[Configuration<M
         let tool = robot.world_from_tool(q);
         let centre = Point2::from(tool.translation.vector.xy());
         let pose = turned_about(&tool, &centre, rng.random_range(-PI..PI));
-        robot.inverse(&q.base, &pose, &mut rng).is_some()
-            || robot.turn_to_reach(&q.base, &pose, &centre, &mut rng).is_some()
+        robot.inverse_from(&q.arm, &q.base, &pose, &mut rng).is_some()
+            || robot.turn_to_reach_with(q.arm.hand_at_work(), &q.base, &pose, &centre, &mut rng).is_some()
     });
     u32::try_from(found.count()).ok()
 }
