@@ -1,10 +1,11 @@
-//! A robot that comes as a file, as a [`Manipulator`]: any arm of up to [`MAX_JOINTS`] joints with a parallel hand, on a base that
-//! drives or is bolted down.
+//! A robot that comes as a file, as a [`Manipulator`]: any arm with a parallel hand, or two of them, of up to [`MAX_JOINTS`] joints
+//! together, on a base that drives or is bolted down.
 //!
 //! [`MAX_JOINTS`]: darrt_primitives::joints::MAX_JOINTS
 
 mod abilities;
 mod apart;
+mod arm;
 mod bases;
 mod chain;
 pub mod choose;
@@ -26,61 +27,20 @@ pub mod trial;
 
 use std::collections::BTreeMap;
 
-use arrayvec::ArrayVec;
 use darrt_primitives::hand_ties::HandTies;
 use darrt_primitives::heading_drive;
 use darrt_primitives::joints::{Joints, MAX_JOINTS};
 use darrt_primitives::kinematics::JointLimit;
-use darrt_primitives::manipulator::{Configuration, Hand, LinkGroup, Manipulator, RobotLink, world_from_base};
+use darrt_primitives::manipulator::{Configuration, Hand, JointVector as _, LinkGroup, Manipulator, RobotLink};
 use darrt_primitives::mobile_arm_space::difference;
 use nalgebra::{Isometry3, Point2};
-use rand::{Rng, RngExt as _};
+use rand::Rng;
 
-use bases::Ring;
-use chain::{ArmChain, Place};
-use few_joints::FewJoints;
-use inverse::Inverse;
-use opening::Opening;
+use arm::PlannedArm;
+use chain::{Driver, Fingers, Place, Values};
 use travel::Levers;
 
 use crate::robot_file::BaseKind;
-
-/// Largest change of any joint between two steps along a straight line of the hand, radians or metres.
-const LINE_JOINT_STEP: f64 = 0.3;
-
-/// In so large a share what is round is turned for the base where it stands, not approached from another one.
-const STAYS_SHARE: f64 = 0.5;
-
-/// The hand of a robot file.
-#[derive(Debug, Clone)]
-struct ParallelHand {
-    opening: Opening,
-    tip_half_width_m: f64,
-    pad_length_m: f64,
-    grip_force_n: f64,
-}
-
-impl Hand for ParallelHand {
-    fn max_gap_m(&self) -> f64 {
-        self.opening.max_gap_m
-    }
-
-    fn tip_beyond_tool_m(&self, gap_m: f64) -> f64 {
-        self.opening.end_m(gap_m)
-    }
-
-    fn tip_half_width_m(&self) -> f64 {
-        self.tip_half_width_m
-    }
-
-    fn pad_length_m(&self) -> f64 {
-        self.pad_length_m
-    }
-
-    fn grip_force_n(&self) -> f64 {
-        self.grip_force_n
-    }
-}
 
 /// Speeds that a robot is planned with.
 #[derive(Debug, Clone)]
@@ -94,34 +54,55 @@ struct Speeds {
 #[derive(Debug, Clone)]
 pub struct FileRobot {
     base_kind: BaseKind,
-    chain: ArmChain,
+    first: PlannedArm,
+    second: Option<PlannedArm>,
+    /// Of the joints of both arms.
     limits: Vec<JointLimit>,
     weights_m: Vec<f64>,
-    hand: ParallelHand,
     links: Vec<RobotLink>,
     places: Vec<Place>,
+    /// By link: which arm it belongs to, 1 if the second alone moves it.
+    owners: Vec<usize>,
     /// By link.
     levers: Vec<Levers>,
-    tool_levers: Levers,
     self_pairs: Vec<(usize, usize)>,
-    inverse: Inverse,
-    ring: Ring,
-    /// For an arm of fewer joints than six.
-    few: Option<FewJoints>,
-    ties: HandTies,
+    /// By variable of the tree.
+    drivers: Vec<Driver>,
+    /// Of the joints that open the hands, where no hand is at work.
+    idle: Fingers,
     speeds: Speeds,
+    /// As both arms can.
     payload_kg: f64,
     push_force_n: f64,
     postures: BTreeMap<String, Joints>,
     home: String,
+    /// The joints in that posture.
+    at_home: Joints,
 }
-
-type Ways = ArrayVec<f64, MAX_JOINTS>;
 
 impl FileRobot {
     /// How its base moves.
     pub fn base_kind(&self) -> BaseKind {
         self.base_kind
+    }
+
+    /// The arm that ends in one of the hands.
+    fn arm(&self, hand: usize) -> &PlannedArm {
+        self.second.as_ref().filter(|_| hand == 1).unwrap_or(&self.first)
+    }
+
+    /// The arm of the hand that is at work.
+    fn arm_at_work(&self, joints: &Joints) -> &PlannedArm {
+        self.arm(joints.hand_at_work())
+    }
+
+    /// The joints that open the hands: that at work by `gap_m`.
+    fn fingers(&self, joints: &Joints, gap_m: f64) -> Fingers {
+        let [first, second] = self.idle;
+        match &self.second {
+            Some(arm) if joints.hand_at_work() == 1 => [first, arm.hand.opening.joint(gap_m)],
+            _ => [self.first.hand.opening.joint(gap_m), second],
+        }
     }
 
     /// The lowest point of what is rigid to the base, and the one farthest ahead, metres in the frame of the base.
@@ -133,35 +114,32 @@ impl FileRobot {
         })
     }
 
-    /// The lowest point of what is rigid to the base, metres, and of what its first joint only turns about a vertical axis, less what
-    /// that must keep from the floor.
+    /// The lowest point of what is rigid to the base, metres, and of what the first joint of its first arm only turns about a vertical
+    /// axis, less what that must keep from the floor.
     fn lowest_m(&self) -> f64 {
         let (rigid_m, _) = self.base_extent_m();
-        let first = self.chain.joints.first().filter(|joint| !joint.slides);
+        let first = self.first.chain.joints.first().filter(|joint| !joint.slides);
         let turned = first.filter(|joint| (joint.before.rotation * joint.axis.into_inner()).z.abs() > 1.0 - 1e-9);
         let Some(joint) = turned else { return rigid_m };
-        let carried = self.links.iter().zip(&self.places).filter(|(_, at)| at.anchor == 1 && at.steps.is_empty());
+        let owned = self.links.iter().zip(&self.places).zip(&self.owners).filter(|(_, owner)| **owner == 0);
+        let carried = owned.map(|(link, _)| link).filter(|(_, at)| at.anchor == 1 && at.steps.is_empty());
         let lowest = carried.map(|(link, place)| load::lowest_m(&link.body, &(joint.before * place.offset)));
         lowest.fold(rigid_m, |lowest, m| lowest.min(m - load::ABOVE_FLOOR_M))
     }
 
-    /// An arm configuration that brings the tool to `base_from_tool`; for an arm of fewer joints than six, turned about its own vertical.
-    fn arm_at(&self, base_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> Option<Joints> {
-        let base = [0.0; 3];
-        if !self.may_reach(&base, base_from_tool) {
-            return None;
-        }
-        let turned = self.few.as_ref().and_then(|few| few.turned(&base, base_from_tool, rng));
-        self.inverse(&base, &turned.unwrap_or(*base_from_tool), rng)
+    /// A configuration that brings the tool of a hand to `base_from_tool`; for an arm of fewer joints than six, turned about its own
+    /// vertical.
+    fn arm_at(&self, hand: usize, base_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> Option<Joints> {
+        self.arm(hand).at(&self.at_home.with_hand_at_work(hand), base_from_tool, rng)
     }
 
     /// The height of the first joint, metres.
     fn shoulder_m(&self) -> f64 {
-        self.chain.joints.first().map_or(0.0, |joint| joint.before.translation.z)
+        self.first.chain.joints.first().map_or(0.0, |joint| joint.before.translation.z)
     }
 
     /// The ways of the joints, of the base, and of its heading.
-    fn ways(&self, a: &Configuration<Joints>, b: &Configuration<Joints>) -> (Ways, [f64; 2]) {
+    fn ways(&self, a: &Configuration<Joints>, b: &Configuration<Joints>) -> (Values, [f64; 2]) {
         let joints = a.arm.as_ref().iter().zip(b.arm.as_ref()).zip(&self.limits);
         let joints = joints.map(|((from, to), limit)| difference(*from, *to, limit)).take(MAX_JOINTS).collect();
         let shift = (b.base[0] - a.base[0]).hypot(b.base[1] - a.base[1]);
@@ -173,7 +151,7 @@ impl Manipulator for FileRobot {
     type Joints = Joints;
 
     fn hand(&self) -> &dyn Hand {
-        &self.hand
+        &self.first.hand
     }
 
     fn limits(&self) -> &[JointLimit] {
@@ -181,22 +159,20 @@ impl Manipulator for FileRobot {
     }
 
     fn world_from_tool(&self, q: &Configuration<Joints>) -> Isometry3<f64> {
-        self.chain.world_from_tool(&q.base, q.arm.as_ref())
+        self.arm_at_work(&q.arm).world_from_tool(&q.base, q.arm.as_ref())
     }
 
+    /// Of the first hand, the other arm at home.
     fn inverse(&self, base: &[f64; 3], world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> Option<Joints> {
-        self.inverse.any(&(world_from_base(base).inverse() * world_from_tool), rng)
+        self.first.inverse(&self.at_home, base, world_from_tool, rng)
     }
 
     fn inverse_near(&self, base: &[f64; 3], world_from_tool: &Isometry3<f64>, near: &Joints) -> Option<Joints> {
-        self.inverse.near(&(world_from_base(base).inverse() * world_from_tool), near, LINE_JOINT_STEP)
+        self.arm_at_work(near).inverse_near(base, world_from_tool, near)
     }
 
     fn base_for(&self, world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] {
-        // The base of an arm that does not come to any pose must stand where it comes to this one.
-        let few = self.few.as_ref().filter(|_| !self.ring.is_fixed());
-        let base = few.and_then(|few| few.base_for(world_from_tool, rng));
-        base.unwrap_or_else(|| self.ring.base_for((&self.chain, &self.limits), world_from_tool, rng))
+        self.first.base_for(world_from_tool, rng)
     }
 
     fn turn_to_reach(
@@ -206,18 +182,64 @@ impl Manipulator for FileRobot {
         centre: &Point2<f64>,
         rng: &mut dyn Rng,
     ) -> Option<f64> {
-        let few = self.few.as_ref()?;
-        // A base that drives may as well stand elsewhere.
-        let stays = self.ring.is_fixed() || rng.random_bool(STAYS_SHARE);
-        if stays { few.turn(base, world_from_tool, centre, rng) } else { None }
+        self.first.turn_to_reach(base, world_from_tool, centre, rng)
     }
 
     fn may_reach(&self, base: &[f64; 3], world_from_tool: &Isometry3<f64>) -> bool {
-        self.ties.allow(world_from_tool) && self.ring.may_reach(base, world_from_tool)
+        self.first.may_reach(base, world_from_tool)
     }
 
     fn hand_ties(&self) -> HandTies {
-        self.ties
+        self.first.ties
+    }
+
+    fn hands(&self) -> usize {
+        1 + usize::from(self.second.is_some())
+    }
+
+    fn hand_of(&self, hand: usize) -> &dyn Hand {
+        &self.arm(hand).hand
+    }
+
+    fn inverse_from(
+        &self,
+        now: &Joints,
+        base: &[f64; 3],
+        world_from_tool: &Isometry3<f64>,
+        rng: &mut dyn Rng,
+    ) -> Option<Joints> {
+        self.arm_at_work(now).inverse(now, base, world_from_tool, rng)
+    }
+
+    fn base_for_hand(&self, hand: usize, world_from_tool: &Isometry3<f64>, rng: &mut dyn Rng) -> [f64; 3] {
+        self.arm(hand).base_for(world_from_tool, rng)
+    }
+
+    fn may_reach_with(&self, hand: usize, base: &[f64; 3], world_from_tool: &Isometry3<f64>) -> bool {
+        self.arm(hand).may_reach(base, world_from_tool)
+    }
+
+    fn turn_to_reach_with(
+        &self,
+        hand: usize,
+        base: &[f64; 3],
+        world_from_tool: &Isometry3<f64>,
+        centre: &Point2<f64>,
+        rng: &mut dyn Rng,
+    ) -> Option<f64> {
+        self.arm(hand).turn_to_reach(base, world_from_tool, centre, rng)
+    }
+
+    fn hand_ties_of(&self, hand: usize) -> HandTies {
+        self.arm(hand).ties
+    }
+
+    fn hand_of_link(&self, link: usize) -> usize {
+        self.owners.get(link).copied().unwrap_or(0)
+    }
+
+    fn with_others_at(&self, now: &Joints, posture: &Joints) -> Joints {
+        self.arm_at_work(now).with_others_at(now, posture)
     }
 
     fn links(&self) -> &[RobotLink] {
@@ -229,12 +251,21 @@ impl Manipulator for FileRobot {
     }
 
     fn link_poses(&self, q: &Configuration<Joints>, gap_m: f64, out: &mut [Isometry3<f64>]) {
-        let arm = q.arm.as_ref();
-        let frames = self.chain.frames(&q.base, arm);
-        let finger = self.hand.opening.joint(gap_m);
-        for (slot, place) in out.iter_mut().zip(&self.places) {
-            if let Some(frame) = frames.get(place.anchor) {
-                *slot = frame * place.in_anchor(arm, finger);
+        let joints = q.arm.as_ref();
+        let fingers = self.fingers(&q.arm, gap_m);
+        let frames = self.first.frames(&q.base, joints);
+        let Some(second) = &self.second else {
+            for (slot, place) in out.iter_mut().zip(&self.places) {
+                if let Some(frame) = frames.get(place.anchor) {
+                    *slot = frame * place.in_anchor(joints, fingers);
+                }
+            }
+            return;
+        };
+        let frames = [frames, second.frames(&q.base, joints)];
+        for ((slot, place), owner) in out.iter_mut().zip(&self.places).zip(&self.owners) {
+            if let Some(frame) = frames.get(*owner).and_then(|frames| frames.get(place.anchor)) {
+                *slot = frame * place.in_anchor(joints, fingers);
             }
         }
     }
@@ -242,7 +273,7 @@ impl Manipulator for FileRobot {
     fn travel_m(&self, a: &Configuration<Joints>, b: &Configuration<Joints>, held_reach_m: f64) -> f64 {
         let (joints, base) = self.ways(a, b);
         let links = self.levers.iter().map(|levers| levers.travel_m(&joints, base, 0.0));
-        links.fold(self.tool_levers.travel_m(&joints, base, held_reach_m), f64::max)
+        links.fold(self.arm_at_work(&a.arm).held_travel_m(&joints, base, held_reach_m), f64::max)
     }
 
     fn link_travel_m(
@@ -256,7 +287,7 @@ impl Manipulator for FileRobot {
         for (slot, levers) in out.iter_mut().zip(&self.levers) {
             *slot = levers.travel_m(&joints, base, 0.0);
         }
-        self.tool_levers.travel_m(&joints, base, held_reach_m)
+        self.arm_at_work(&a.arm).held_travel_m(&joints, base, held_reach_m)
     }
 
     fn payload_kg(&self) -> f64 {

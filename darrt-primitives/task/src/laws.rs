@@ -51,8 +51,7 @@ pub const ROLES: &str = "task-robot.roles: arm joints are joints of the descript
 /// Pairs.
 pub const PAIRS: &str = "task-robot.pairs: the pairs of links that the robot keeps apart are among those of the facts";
 /// Numbers.
-pub const SAME: &str =
-    "task-robot.same: pads, grip, payload, push force and drives of the facts are those of the robot";
+pub const SAME: &str = "task-robot.same: pads, grip, payload, push force and drives of the facts are those of the robot, of two arms the least payload and push force";
 
 /// Names of a primitive.
 pub const NAMED: &str = "task-primitive.named: it has a name without blanks, is known by the id that it is given, and needs other primitives only, each once";
@@ -191,10 +190,11 @@ fn summary(facts: &RobotFacts) -> String {
         grip_force_n,
         payload_kg,
         push_force_n,
+        second,
     } = facts;
     let named = (arm_joints, finger_joint, tool_link, finger_links, tip_links, start, at_rest, self_pairs);
     let switches = [is_limited_softly, is_bolted, drives_along_heading];
-    format!("{named:?} {switches:?} {:?}", [pad_length_m, grip_force_n, payload_kg, push_force_n])
+    format!("{named:?} {switches:?} {:?} {second:?}", [pad_length_m, grip_force_n, payload_kg, push_force_n])
 }
 
 fn models<M: TaskRobot>(problem: &ProblemFile) -> Result<(), Broken> {

@@ -12,6 +12,7 @@ pub mod error;
 mod pads;
 pub mod read;
 mod straight;
+mod two_arms;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -19,7 +20,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use amend::{Amended, amend};
+pub use amend::{Amended, AmendedArm, amend};
 pub use built_hand::BuiltHand;
 pub use error::RobotFileError;
 pub use read::Source;
@@ -72,17 +73,68 @@ pub struct RobotFile {
     pub hand: Option<BuiltHand>,
     /// The hand with two fingers.
     pub gripper: Gripper,
-    /// Postures of the arm by name: one value for each joint (rad or m), from the base outwards.
+    /// A second arm with a hand of its own, of a robot that works with both.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second: Option<SecondArm>,
+    /// Postures of the arm by name: one value for each joint (rad or m), from the base outwards; then one for each joint of the
+    /// second arm that the first has not.
     pub postures: BTreeMap<String, Vec<f64>>,
     /// The posture in which the arm starts where a problem does not say.
     pub home: String,
-    /// Values of joints that neither arm nor hand has, such as a lift or a head (rad or m); by default 0, or what is nearest to it
+    /// Values of joints that no arm and no hand has, such as a lift or a head (rad or m); by default 0, or what is nearest to it
     /// within the limits.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub rest: BTreeMap<String, f64>,
     /// Pairs of links that are never checked against each other, besides neighbours.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ignore: Vec<[String; 2]>,
+}
+
+/// `[second]`: a second arm, in the words of the first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SecondArm {
+    /// The arm.
+    pub arm: Arm,
+    /// The tool frame of its hand.
+    pub tool: Tool,
+    /// Its hand.
+    pub gripper: Gripper,
+}
+
+/// What a robot file says of one arm and its hand.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ArmTables<'a> {
+    /// What comes before its keys.
+    prefix: &'static str,
+    pub(crate) arm: &'a Arm,
+    pub(crate) tool: &'a Tool,
+    pub(crate) gripper: &'a Gripper,
+}
+
+impl ArmTables<'_> {
+    /// The path of one of its keys, such as `arm.to`.
+    pub(crate) fn key(&self, key: &str) -> String {
+        format!("{}{key}", self.prefix)
+    }
+}
+
+impl RobotFile {
+    /// What it says of the first arm.
+    pub(crate) fn first_arm(&self) -> ArmTables<'_> {
+        ArmTables { prefix: "", arm: &self.arm, tool: &self.tool, gripper: &self.gripper }
+    }
+
+    /// What it says of the second arm, if it has one.
+    pub(crate) fn second_arm(&self) -> Option<ArmTables<'_>> {
+        let SecondArm { arm, tool, gripper } = self.second.as_ref()?;
+        Some(ArmTables { prefix: "second.", arm, tool, gripper })
+    }
+
+    /// What it says of its arms, the first one first.
+    pub(crate) fn arms(&self) -> impl Iterator<Item = ArmTables<'_>> {
+        std::iter::once(self.first_arm()).chain(self.second_arm())
+    }
 }
 
 /// How the base moves.
@@ -93,7 +145,7 @@ pub enum BaseKind {
     Fixed,
     /// It drives on the floor in any direction, and turns.
     Planar,
-    /// It slides along a line in its frame: the line becomes the first joint of the arm.
+    /// It slides along a line in its frame: the line becomes the first joint of each arm.
     Rail,
     /// It drives along its heading only, ahead and back, and turns on the spot.
     Differential,

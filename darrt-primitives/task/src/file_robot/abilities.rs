@@ -19,18 +19,32 @@ const AHEAD_M: (f64, u32) = (0.05, 24);
 
 /// What a person should know of an arm that does not take its hand to any pose, a line each; none for one that does.
 pub(super) fn lines(robot: &FileRobot) -> Vec<String> {
-    let ties = robot.hand_ties();
     let mut lines = Vec::new();
     if let Some(shares) = other_headings(robot) {
         let [any, down] = shares.map(|share| share.map(|share| format!("{:.0} %", 100.0 * share)));
         let joints = robot.limits().len();
-        let base = if robot.ring.is_fixed() { "" } else { "; from other places of the base from any side" };
+        let base = if robot.first.ring.is_fixed() { "" } else { "; from other places of the base from any side" };
         let down = down.map_or_else(String::new, |share| format!(", to {share} of those in which it points down"));
         lines.push(format!(
             "heading:  {joints} joints take the hand to {} of its poses turned to another heading{down}{base}",
             any.unwrap_or_default()
         ));
     }
+    for hand in 0..robot.hands() {
+        let tied = tied(robot, hand);
+        // Of two hands each line says which.
+        lines.extend(tied.into_iter().map(|line| match robot.hands() {
+            1 => line,
+            _ => format!("{line} (hand {})", hand + 1),
+        }));
+    }
+    lines
+}
+
+/// What the joints do not change of one of the hands, a line each.
+fn tied(robot: &FileRobot, hand: usize) -> Vec<String> {
+    let ties = robot.hand_ties_of(hand);
+    let mut lines = Vec::new();
     match ties.pushing(false) {
         None => {}
         Some(None) => {
@@ -65,14 +79,14 @@ pub(super) fn lines(robot: &FileRobot) -> Vec<String> {
 /// In which share of its poses, each turned about its own vertical by chance, the hand is reached with the base where it is; and of
 /// those in which it points down, where there are such. `None` for an arm that takes its hand to any pose.
 fn other_headings(robot: &FileRobot) -> Option<[Option<f64>; 2]> {
-    robot.few.as_ref()?;
+    robot.first.few.as_ref()?;
     let mut rng = stream(0, 8, 0, Purpose::Extend);
     let down = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), FRAC_PI_2);
     let mut counts = [[0_u32; 2]; 2];
     for _ in 0..HEADINGS {
         let arm = drawn_arm(robot, &mut rng)?;
         let pose = robot.world_from_tool(&Configuration { base: [0.0; 3], arm });
-        let is_down = robot.arm_at(&Isometry3::from_parts(pose.translation, down), &mut rng).is_some();
+        let is_down = robot.arm_at(0, &Isometry3::from_parts(pose.translation, down), &mut rng).is_some();
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), rng.random_range(-PI..PI));
         for ([asked, reached], rotation) in counts.iter_mut().zip([Some(pose.rotation), is_down.then_some(down)]) {
             let Some(rotation) = rotation else { continue };

@@ -10,13 +10,72 @@ use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 /// What the value of a joint comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Driver {
-    /// A joint of the arm, by index.
+    /// A joint of an arm, by its index among those of the robot.
     Arm(usize),
-    /// The joint that opens the hand.
-    Finger,
+    /// The joint that opens a hand, by the number of the hand.
+    Finger(usize),
     /// It stands at this value.
     Rests(f64),
 }
+
+/// The values of the joints that open the hands.
+pub(super) type Fingers = [f64; 2];
+
+impl Driver {
+    /// The value, for these joints of the robot.
+    pub(super) fn value(&self, arm: &[f64], fingers: Fingers) -> f64 {
+        match *self {
+            Self::Arm(index) => arm.get(index).copied().unwrap_or(0.0),
+            Self::Finger(hand) => fingers.get(hand).copied().unwrap_or(0.0),
+            Self::Rests(value) => value,
+        }
+    }
+}
+
+/// Which of the robot's joints are those of one arm, in its order: as many from the first on as the arms share, then those from
+/// `from` on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Own {
+    shared: usize,
+    from: usize,
+    count: usize,
+}
+
+impl Own {
+    /// Of the first arm, which has the first so many.
+    pub(super) fn first(count: usize) -> Self {
+        Self { shared: count, from: count, count }
+    }
+
+    /// Of an arm of `count` joints that shares so many with the first, which has `from`.
+    pub(super) fn second(shared: usize, from: usize, count: usize) -> Self {
+        Self { shared, from, count }
+    }
+
+    /// The index among the robot's joints of a joint of the arm.
+    pub(super) fn index(&self, joint: usize) -> usize {
+        if joint < self.shared { joint } else { self.from + joint - self.shared }
+    }
+
+    /// The indices of all of them.
+    pub(super) fn indices(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.count).map(|joint| self.index(joint))
+    }
+
+    /// The values of the arm's joints of those of the robot; `place` has room for them.
+    pub(super) fn of<'a>(&self, all: &'a [f64], place: &'a mut Values) -> &'a [f64] {
+        if self.shared == self.count {
+            return all.get(..self.count).unwrap_or(all);
+        }
+        place.clear();
+        // There are no more joints than places: a robot of more is refused when it is read.
+        self.indices().filter_map(|joint| all.get(joint)).take(MAX_JOINTS).for_each(|value| place.push(*value));
+        place
+    }
+}
+
+/// A value for each joint of an arm or of a robot.
+pub(super) type Values = ArrayVec<f64, MAX_JOINTS>;
 
 /// One moving joint below what carries it.
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +101,7 @@ impl Joint {
     }
 }
 
-/// A joint between a link and what carries it that the hand's opening or, by way of a joint that follows, the arm moves.
+/// A joint between a link and what carries it that a hand's opening or, by way of a joint that follows, an arm moves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
     pub(super) joint: Joint,
@@ -54,7 +113,7 @@ pub(super) struct Step {
 /// Where a link is.
 #[derive(Debug, Clone)]
 pub(super) struct Place {
-    /// 0: rigid to the base; k: carried by joint k of the arm, counted from 1.
+    /// 0: rigid to the base; k: carried by joint k of the arm that it belongs to, counted from 1.
     pub(super) anchor: usize,
     pub(super) steps: Vec<Step>,
     /// Below the last of the steps.
@@ -62,16 +121,11 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The link's pose in the frame of what carries it.
-    pub(super) fn in_anchor(&self, arm: &[f64], finger: f64) -> Isometry3<f64> {
+    /// The link's pose in the frame of what carries it, for these joints of the robot.
+    pub(super) fn in_anchor(&self, arm: &[f64], fingers: Fingers) -> Isometry3<f64> {
         let mut pose: Option<Isometry3<f64>> = None;
         for step in &self.steps {
-            let driver = match step.driver {
-                Driver::Arm(index) => arm.get(index).copied().unwrap_or(0.0),
-                Driver::Finger => finger,
-                Driver::Rests(value) => value,
-            };
-            let moved = step.joint.moved(step.multiplier * driver + step.offset);
+            let moved = step.joint.moved(step.multiplier * step.driver.value(arm, fingers) + step.offset);
             pose = Some(pose.map_or(moved, |pose| pose * moved));
         }
         pose.map_or(self.offset, |pose| pose * self.offset)
@@ -81,7 +135,7 @@ impl Place {
 /// Frames of base and joints: the base first.
 pub(super) type Frames = ArrayVec<Isometry3<f64>, { MAX_JOINTS + 1 }>;
 
-/// The joints of the arm, in a row.
+/// The joints of an arm, in a row.
 #[derive(Debug, Clone)]
 pub(super) struct ArmChain {
     pub(super) joints: Vec<Joint>,
@@ -112,11 +166,11 @@ impl ArmChain {
     }
 }
 
-/// A tree with the meaning of its variables.
+/// A tree with the meaning of its variables, as one arm sees it.
 pub(super) struct Layout<'a> {
     pub(super) tree: &'a KinematicTree,
     /// By variable.
-    pub(super) drivers: Vec<Driver>,
+    pub(super) drivers: &'a [Driver],
     /// The links that the joints of the arm move, from the base outwards.
     pub(super) arm_links: Vec<usize>,
 }
@@ -128,7 +182,7 @@ impl Layout<'_> {
         for (place, link) in self.arm_links.iter().enumerate() {
             let parent = self.tree.parent(*link)?;
             let above = self.place_above(parent, place)?;
-            let before = above.in_anchor(&[], 0.0) * self.tree.parent_from_link(*link)?;
+            let before = above.in_anchor(&[], Fingers::default()) * self.tree.parent_from_link(*link)?;
             let (axis, slides) = match self.tree.motion(*link)? {
                 LinkMotion::Turning { axis, .. } => (*axis, false),
                 LinkMotion::Sliding { axis, .. } => (*axis, true),
@@ -137,7 +191,7 @@ impl Layout<'_> {
             joints.push(Joint { before, axis, slides });
         }
         let tool = self.place(tool)?;
-        Some(ArmChain { joints, wrist_from_tool: tool.in_anchor(&[], 0.0) })
+        Some(ArmChain { joints, wrist_from_tool: tool.in_anchor(&[], Fingers::default()) })
     }
 
     /// Where a link is.

@@ -53,7 +53,9 @@ pub fn with_robot(
     if !file.base.kind.drives() {
         leave_out(&Contract::drives, &format!("the base of {} does not drive", file.name));
     }
-    if let Some(why) = why_not_lifted(&loaded.hand_ties()?) {
+    // One hand that is lifted is enough.
+    let whys: Option<Vec<_>> = loaded.hand_ties()?.iter().map(why_not_lifted).collect();
+    if let Some(why) = whys.and_then(|whys| whys.into_iter().next()) {
         leave_out(&|contract| contract.hand != HandUse::Empty, &format!("{}: {why}", file.name));
     }
     Ok((problem, changes))

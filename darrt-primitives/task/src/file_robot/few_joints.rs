@@ -243,7 +243,7 @@ mod tests {
     fn from_the_base_that_is_drawn_the_arm_comes_to_the_pose() {
         for robot in robots() {
             let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
-            let few = robot.few.as_ref().unwrap();
+            let few = robot.first.few.as_ref().unwrap();
             let mut found = 0;
             for pose in poses(&robot, &mut rng) {
                 let Some(base) = few.base_for(&pose, &mut rng) else { continue };
@@ -281,7 +281,7 @@ mod tests {
     fn what_is_turned_as_the_arm_wants_it_is_reached() {
         for robot in robots() {
             let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
-            let few = robot.few.as_ref().unwrap();
+            let few = robot.first.few.as_ref().unwrap();
             let base = [0.3, -0.2, 0.7];
             let (mut found, mut as_drawn) = (0, 0);
             for _ in 0..200 {

@@ -6,7 +6,7 @@ use darrt_core::random::{Purpose, Stream, stream};
 use darrt_primitives::joints::Joints;
 use darrt_primitives::kinematics::{KinematicTree, PairFate};
 use darrt_primitives::laws::{ManipulatorClaims, ReachClaims, check_manipulator, check_reaches};
-use darrt_primitives::manipulator::{Configuration, LinkGroup, Manipulator as _};
+use darrt_primitives::manipulator::{Configuration, JointVector as _, LinkGroup, Manipulator as _};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::RngExt as _;
 
@@ -38,6 +38,9 @@ const SIDES_M: [f64; 3] = [0.0, -0.3, 0.3];
 /// So far before the base a hand works at least, metres.
 const BEFORE_M: f64 = 0.17;
 
+/// At which heights, lowest and highest, and how far ahead a hand that points down reaches, metres.
+type Reach = Option<([f64; 2], f64)>;
+
 /// What was found.
 #[derive(Debug, Clone)]
 pub struct Inspection {
@@ -53,7 +56,7 @@ pub struct Inspection {
     pub postures: Vec<String>,
     /// Its base drives.
     pub drives: bool,
-    /// At which heights a hand that points down reaches, lowest and highest, and how far ahead, metres.
+    /// At which heights the (first) hand that points down reaches, lowest and highest, and how far ahead, metres.
     pub reach_down: Option<([f64; 2], f64)>,
     /// Where the table of its first problem stands.
     pub place: trial::Place,
@@ -77,33 +80,41 @@ pub fn inspect(name_or_path: &str) -> Result<Inspection, RobotFileError> {
     remarks(&loaded, &mut odd);
     joints(&loaded, &mut odd);
     pads(&loaded, &robot, &mut odd);
-    let found = share_found(&robot);
-    if found < FOUND {
-        odd.push(format!(
-            "{}: of {POSES} poses that the tool can reach the numeric inverse finds {:.0} %",
-            loaded.source.name,
-            100.0 * found
-        ));
+    for hand in 0..robot.hands() {
+        let found = share_found(&robot, hand);
+        if found < FOUND {
+            odd.push(format!(
+                "{}: of {POSES} poses that the {} can reach the numeric inverse finds {:.0} %",
+                loaded.source.name,
+                named(&robot, hand, "tool"),
+                100.0 * found
+            ));
+        }
     }
     if let Some(broken) = laws(&loaded.with_all_pairs().robot(Limits::Soft, [0.0; 3])?) {
         odd.push(format!("{}: a law of robots does not hold: {broken}", loaded.source.name));
     }
-    let reach_down = reach_down(&robot);
-    let pushes = matches!(robot.hand_ties().pushing(false), Some(Some(_)));
-    if reach_down.is_none() && !pushes {
-        odd.push(format!(
-            "{}:{}: a hand that points down (tool x axis) reaches nowhere around the base; the primitives push, pick and place with it",
-            loaded.source.name,
-            loaded.source.line("tool")
-        ));
+    let reaches: Vec<_> = (0..robot.hands()).map(|hand| reach_down(&robot, hand)).collect();
+    for ((hand, reach), tables) in reaches.iter().enumerate().zip(loaded.source.file.arms()) {
+        let pushes = matches!(robot.hand_ties_of(hand).pushing(false), Some(Some(_)));
+        if reach.is_none() && !pushes {
+            odd.push(format!(
+                "{}:{}: a {} that points down (tool x axis) reaches nowhere around the base; the primitives push, pick and place with \
+                 it",
+                loaded.source.name,
+                loaded.source.line(&tables.key("tool")),
+                named(&robot, hand, "hand")
+            ));
+        }
     }
+    let reach_down = reaches.first().copied().flatten();
     Ok(Inspection {
         name: loaded.source.file.name.clone(),
-        understood: understood(&loaded, &robot, &pairs, reach_down),
+        understood: understood(&loaded, &robot, &pairs, &reaches),
         pairs: pairs.all.iter().map(|pair| line(pair, pairs.samples)).collect(),
         odd,
         postures: robot.postures.keys().cloned().collect(),
-        drives: !robot.ring.is_fixed(),
+        drives: robot.base_kind.drives(),
         place: trial::place(&robot, (&robot.home, &robot.postures), reach_down),
         reach_down,
     })
@@ -113,7 +124,12 @@ fn line(pair: &Pair, samples: usize) -> String {
     format!("{} with {}: {}", pair.links[0], pair.links[1], pair.reason(samples))
 }
 
-fn understood(loaded: &Loaded, robot: &FileRobot, pairs: &Pairs, reach_down: Option<([f64; 2], f64)>) -> Vec<String> {
+/// A thing of the robot that each of its hands has: which one of two, by its number from 1.
+fn named(robot: &FileRobot, hand: usize, what: &str) -> String {
+    if robot.hands() == 1 { what.to_owned() } else { format!("{what} {}", hand + 1) }
+}
+
+fn understood(loaded: &Loaded, robot: &FileRobot, pairs: &Pairs, reaches: &[Reach]) -> Vec<String> {
     let file = &loaded.source.file;
     let mut lines = vec![format!("base:     {:?}", file.base.kind).to_lowercase()];
     lines.extend(abilities::lines(robot));
@@ -134,13 +150,20 @@ fn understood(loaded: &Loaded, robot: &FileRobot, pairs: &Pairs, reach_down: Opt
         let names: Vec<_> = robot.links().iter().filter(|l| l.group == group).map(|l| &*l.body.name).collect();
         lines.push(format!("links:    {} {what}: {}", names.len(), names.join(", ")));
     }
-    let hand = robot.hand();
-    lines.push(format!(
-        "hand:     opens to {:.1} mm, reaches {:.1} mm beyond the tool frame when closed, tips {:.1} mm wide",
+    for (number, arm) in loaded.amended.arms().enumerate() {
+        let hand = robot.hand_of(number);
+        let which = if robot.hands() == 1 {
+            String::new()
+        } else {
+            format!("{} at `{}`, moved by {} joints, ", number + 1, arm.tool_link, arm.joints.len())
+        };
+        lines.push(format!(
+            "hand:     {which}opens to {:.1} mm, reaches {:.1} mm beyond the tool frame when closed, tips {:.1} mm wide",
         1e3 * hand.max_gap_m(),
         1e3 * hand.tip_beyond_tool_m(0.0),
         2e3 * hand.tip_half_width_m()
     ));
+    }
     let straightened = &loaded.amended.straightened;
     if !straightened.is_empty() {
         lines.push(format!("straight: angles of {} are taken as right ones", straightened.join(", ")));
@@ -160,9 +183,11 @@ fn understood(loaded: &Loaded, robot: &FileRobot, pairs: &Pairs, reach_down: Opt
         count(&|pair| pair.rule == Rule::Hand),
         count(&|pair| pair.rule == Rule::Structure)
     ));
-    if let Some(([low, high], distance)) = reach_down {
+    for (hand, reach) in reaches.iter().enumerate() {
+        let Some(([low, high], distance)) = reach else { continue };
         lines.push(format!(
-            "reach:    pointing down {distance} m ahead, tool from {low:.1} to {high:.1} m above the floor"
+            "reach:    pointing down {distance} m ahead, {} from {low:.1} to {high:.1} m above the floor",
+            named(robot, hand, "tool")
         ));
     }
     lines
@@ -172,8 +197,8 @@ fn rng(number: u64) -> Stream {
     stream(0, number, 0, Purpose::Extend)
 }
 
-fn drawn(robot: &FileRobot, rng: &mut Stream) -> Option<Configuration<Joints>> {
-    Some(Configuration { base: [0.0; 3], arm: drawn_arm(robot, rng)? })
+fn drawn(robot: &FileRobot, hand: usize, rng: &mut Stream) -> Option<Configuration<Joints>> {
+    Some(Configuration { base: [0.0; 3], arm: drawn_arm(robot, rng)?.with_hand_at_work(hand) })
 }
 
 /// How far the hand is open while links are looked at, metres.
@@ -181,26 +206,36 @@ fn gap_m(robot: &FileRobot) -> f64 {
     0.8 * robot.hand().max_gap_m()
 }
 
-/// How many poses that the tool can reach are found.
-fn share_found(robot: &FileRobot) -> f64 {
+/// How many poses that the tool of a hand can reach are found.
+fn share_found(robot: &FileRobot, hand: usize) -> f64 {
     let mut rng = rng(1);
     let found = (0..POSES).filter(|_| {
-        drawn(robot, &mut rng).is_some_and(|q| robot.inverse(&q.base, &robot.world_from_tool(&q), &mut rng).is_some())
+        drawn(robot, hand, &mut rng)
+            .is_some_and(|q| robot.inverse_from(&q.arm, &q.base, &robot.world_from_tool(&q), &mut rng).is_some())
     });
     found.count() as f64 / POSES as f64
 }
 
 /// The first law that is broken, in words.
 fn laws(robot: &FileRobot) -> Option<String> {
+    (0..robot.hands()).find_map(|hand| laws_at_work(robot, hand))
+}
+
+/// The same while one of the hands is at work.
+fn laws_at_work(robot: &FileRobot, hand: usize) -> Option<String> {
     let mut rng = rng(2);
-    let max_gap_m = robot.hand().max_gap_m();
+    let max_gap_m = robot.hand_of(hand).max_gap_m();
     // A base that is bolted down has one place.
     let place = |rng: &mut Stream| {
-        if robot.ring.is_fixed() { [0.0; 3] } else { [rng.random_range(-1.0..1.0), 0.3, rng.random_range(-3.0..3.0)] }
+        if robot.base_kind.drives() {
+            [rng.random_range(-1.0..1.0), 0.3, rng.random_range(-3.0..3.0)]
+        } else {
+            [0.0; 3]
+        }
     };
     let mut configurations = Vec::new();
     for seed in 0..LAW_PAIRS {
-        let (mut a, mut b) = (drawn(robot, &mut rng)?, drawn(robot, &mut rng)?);
+        let (mut a, mut b) = (drawn(robot, hand, &mut rng)?, drawn(robot, hand, &mut rng)?);
         (a.base, b.base) = (place(&mut rng), place(&mut rng));
         let gaps = [0.25 * max_gap_m, max_gap_m];
         if let Err(broken) = check_manipulator(robot, [&a, &b], gaps, seed, &ManipulatorClaims::default()) {
@@ -288,35 +323,42 @@ fn remarks(loaded: &Loaded, odd: &mut Vec<String>) {
 /// Joints of the arm of which the description says less than planning with times needs.
 fn joints(loaded: &Loaded, odd: &mut Vec<String>) {
     let Ok(tree) = KinematicTree::new(&loaded.amended.description) else { return };
-    for name in &loaded.amended.arm_joints {
-        let variable = tree.variable_index(name).and_then(|index| tree.variables().get(index));
-        if variable.is_some_and(|v| v.max_velocity <= 0.0) && loaded.source.file.arm.speeds.is_none() {
-            let file = &loaded.source.name;
-            odd.push(format!(
-                "{file}: the description gives `{name}` no speed, it is planned with 1 per second: see `arm.speeds`"
-            ));
+    for (tables, arm) in loaded.source.file.arms().zip(loaded.amended.arms()) {
+        for name in arm.joints.iter().filter(|_| tables.arm.speeds.is_none()) {
+            let variable = tree.variable_index(name).and_then(|index| tree.variables().get(index));
+            if variable.is_some_and(|v| v.max_velocity <= 0.0) {
+                let (file, key) = (&loaded.source.name, tables.key("arm.speeds"));
+                odd.push(format!(
+                    "{file}: the description gives `{name}` no speed, it is planned with 1 per second: see `{key}`"
+                ));
+            }
         }
     }
 }
 
 /// Pads that are longer than the tips: a length that was not measured, or a tool frame that does not look out of the hand.
 fn pads(loaded: &Loaded, robot: &FileRobot, odd: &mut Vec<String>) {
-    let (said_m, long_m) = (loaded.source.file.gripper.pad_length_m, robot.hand().pad_length_m());
-    if long_m < said_m {
-        let [said, long, wide] = [said_m, long_m, 2.0 * robot.hand().tip_half_width_m()].map(|metres| 1000.0 * metres);
+    for (number, tables) in loaded.source.file.arms().enumerate() {
+        let hand = robot.hand_of(number);
+        let (said_m, long_m) = (tables.gripper.pad_length_m, hand.pad_length_m());
+        if long_m >= said_m {
+            continue;
+        }
+        let [said, long, wide] = [said_m, long_m, 2.0 * hand.tip_half_width_m()].map(|metres| 1000.0 * metres);
+        let key = tables.key("gripper.pad_length_m");
         odd.push(format!(
-            "{}:{}: `gripper.pad_length_m` is {said:.1} mm, but the tips are {long:.1} mm long (along x of the tool frame) and \
+            "{}:{}: `{key}` is {said:.1} mm, but the tips are {long:.1} mm long (along x of the tool frame) and \
              {wide:.1} mm wide (z): they count as long as they are; does x point out of the hand?",
             loaded.source.name,
-            loaded.source.line("gripper.pad_length_m"),
+            loaded.source.line(&key),
         ));
     }
 }
 
-/// At which heights a hand that points down reaches, at the distance where the range is the largest.
-fn reach_down(robot: &FileRobot) -> Option<([f64; 2], f64)> {
+/// At which heights one of the hands that points down reaches, at the distance where the range is the largest.
+fn reach_down(robot: &FileRobot, hand: usize) -> Reach {
     let mut rng = rng(4);
-    let mut best: Option<([f64; 2], f64)> = None;
+    let mut best: Reach = None;
     let down = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::FRAC_PI_2);
     // Not above what carries the arm, where no table can be.
     let (_, front) = robot.base_extent_m();
@@ -325,7 +367,7 @@ fn reach_down(robot: &FileRobot) -> Option<([f64; 2], f64)> {
             // In front, and a little to either side: an arm may be mounted there.
             SIDES_M.into_iter().any(|side| {
                 let tool = Isometry3::from_parts(Vector3::new(distance, side, *height).into(), down);
-                robot.arm_at(&tool, &mut rng).is_some()
+                robot.arm_at(hand, &tool, &mut rng).is_some()
             })
         });
         let Some(low) = reached.next() else { continue };

@@ -1,5 +1,6 @@
 //! From a robot file to the robot.
 
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use darrt_geom::{Body, Shape};
@@ -8,22 +9,24 @@ use darrt_primitives::joints::Joints;
 use darrt_primitives::kinematics::{
     JointLimit, KinematicTree, KinematicsError, MeshPlaces, RobotDescription, UrdfError, link_bodies,
 };
-use darrt_primitives::manipulator::{JointVector as _, LinkGroup, RobotLink};
+use darrt_primitives::manipulator::{JointVector as _, LinkGroup, Manipulator as _, RobotLink};
 use nalgebra::{Isometry3, Point3, Vector3};
 
+use super::arm::{ParallelHand, PlannedArm};
 use super::bases::Ring;
-use super::chain::{ArmChain, Driver, Layout, Place};
+use super::chain::{ArmChain, Driver, Fingers, Layout, Own, Place};
 use super::few_joints::FewJoints;
 use super::inverse::Inverse;
 use super::opening::{Law, Opening};
 use super::semantic::Semantic;
 use super::ties::ties;
-use super::travel::{Levers, corners};
-use super::{FileRobot, ParallelHand, Speeds, pairs, shipped};
+use super::travel::{Carrier, Levers, corners};
+use super::{FileRobot, Speeds, pairs, shipped};
 use crate::problem_file::Limits;
 use crate::problem_file::Robot as RobotSettings;
+use crate::problem_file::suggest::{hint, nearest};
 use crate::robot_file::error::Fault;
-use crate::robot_file::{Amended, BaseKind, RobotFileError, Source, amend};
+use crate::robot_file::{Amended, AmendedArm, ArmTables, BaseKind, RobotFileError, Source, amend};
 
 /// So far a wheel may press into the floor, metres: as far as the verifier lets it.
 const FLOOR_M: f64 = 1e-3;
@@ -108,21 +111,25 @@ impl Loaded {
         RobotFileError::Description { file: self.source.name.clone(), source }
     }
 
-    /// The tree's variables at rest, the hand open.
-    fn layout<'a>(&self, tree: &'a KinematicTree) -> Option<(Layout<'a>, usize)> {
-        let finger = tree.variable_index(&self.source.file.gripper.joint)?;
+    /// What moves the variables of the tree.
+    fn drivers(&self, tree: &KinematicTree) -> Option<Vec<Driver>> {
         let mut drivers: Vec<_> = tree.variables().iter().map(|v| Driver::Rests(v.limit.clamp(0.0))).collect();
         for (name, value) in &self.amended.rest {
             *drivers.get_mut(tree.variable_index(name)?)? = Driver::Rests(*value);
         }
-        *drivers.get_mut(finger)? = Driver::Finger;
-        let mut arm_links = Vec::new();
-        for (index, name) in self.amended.arm_joints.iter().enumerate() {
-            let variable = tree.variable_index(name)?;
-            *drivers.get_mut(variable)? = Driver::Arm(index);
-            arm_links.push(tree.variables().get(variable)?.link);
+        for (hand, tables) in self.source.file.arms().enumerate() {
+            *drivers.get_mut(tree.variable_index(&tables.gripper.joint)?)? = Driver::Finger(hand);
         }
-        Some((Layout { tree, drivers, arm_links }, finger))
+        for (index, name) in self.amended.arm_joints.iter().enumerate() {
+            *drivers.get_mut(tree.variable_index(name)?)? = Driver::Arm(index);
+        }
+        Some(drivers)
+    }
+
+    /// The tree as one arm sees it.
+    fn layout<'a>(tree: &'a KinematicTree, drivers: &'a [Driver], arm: &AmendedArm) -> Option<Layout<'a>> {
+        let link = |name: &String| Some(tree.variables().get(tree.variable_index(name)?)?.link);
+        Some(Layout { tree, drivers, arm_links: arm.joints.iter().map(link).collect::<Option<_>>()? })
     }
 
     /// The same with no pair of links left out: what the laws of robots are about.
@@ -137,13 +144,16 @@ impl Loaded {
         self.built(kind, base, true)
     }
 
-    /// What the joints of the arm do not change of its hand. Reads no meshes.
-    pub(super) fn hand_ties(&self) -> Result<HandTies, RobotFileError> {
+    /// What the joints of its arms do not change of their hands. Reads no meshes.
+    pub(super) fn hand_ties(&self) -> Result<Vec<HandTies>, RobotFileError> {
         let tree = &self.tree()?;
-        let chain = self.layout(tree).zip(tree.link_index(&self.amended.tool_link));
-        let chain = chain.and_then(|((layout, _), tool)| layout.chain(tool));
         let no_layout = || self.source.located(Fault::new("arm", "does not fit the description"));
-        Ok(ties(&chain.ok_or_else(no_layout)?))
+        let drivers = self.drivers(tree).ok_or_else(no_layout)?;
+        let of_arm = |arm: &AmendedArm| {
+            let layout = Self::layout(tree, &drivers, arm)?;
+            Some(ties(&layout.chain(tree.link_index(&arm.tool_link)?)?))
+        };
+        self.amended.arms().map(of_arm).collect::<Option<_>>().ok_or_else(no_layout)
     }
 
     /// The robot wherever its lowest point may be.
@@ -153,62 +163,154 @@ impl Loaded {
 
     fn built(&self, kind: Limits, base: [f64; 3], is_placed: bool) -> Result<FileRobot, RobotFileError> {
         let (tree, bodies) = self.solids()?;
-        let at = |key: &str, why: &str| self.source.located(Fault::new(key, why));
-        let no_layout = || at("arm", "does not fit the description");
-        let (layout, finger) = self.layout(tree).ok_or_else(no_layout)?;
-        let tool = tree.link_index(&self.amended.tool_link).ok_or_else(no_layout)?;
-        let chain = layout.chain(tool).ok_or_else(no_layout)?;
-        let unsolvable = |error: KinematicsError| at("arm.to", &format!("cannot be used: {error}"));
-        let inverse = Inverse::new(tree, &self.amended, &layout, kind).map_err(unsolvable)?;
-        let limits = inverse.limits().to_vec();
+        let no_layout = || self.source.located(Fault::new("arm", "does not fit the description"));
+        let drivers = self.drivers(tree).ok_or_else(no_layout)?;
+        let file = &self.source.file;
+        let first = self.skeleton((tree, &drivers), (file.first_arm(), &self.amended.first), kind)?;
+        let second = file.second_arm().zip(self.amended.second.as_ref());
+        let second = second.map(|of| self.skeleton((tree, &drivers), of, kind)).transpose()?;
+        let mut limits = vec![JointLimit::UNLIMITED; self.amended.arm_joints.len()];
+        for skeleton in std::iter::once(&first).chain(&second) {
+            for (joint, limit) in skeleton.own.indices().zip(skeleton.inverse.limits()) {
+                *limits.get_mut(joint).ok_or_else(no_layout)? = *limit;
+            }
+        }
         let mut links = Vec::new();
         let mut places = Vec::new();
+        let mut owners = Vec::new();
         let mut numbers = Vec::new();
         for (link, body) in bodies.iter().enumerate() {
             let Some(body) = body else { continue };
-            let place = layout.place(link).ok_or_else(no_layout)?;
-            links.push(RobotLink { body: body.clone(), group: group(&place, chain.joints.len()) });
+            let place = first.layout.place(link).ok_or_else(no_layout)?;
+            // What the second arm alone moves is its own.
+            let (owner, skeleton, place) = match &second {
+                Some(second) if is_of_second(&place, self.amended.first.joints.len()) => {
+                    (1, second, second.layout.place(link).ok_or_else(no_layout)?)
+                }
+                _ => (0, &first, place),
+            };
+            links.push(RobotLink { body: body.clone(), group: group(&place, skeleton.chain.joints.len(), owner) });
             places.push(place);
+            owners.push(owner);
             numbers.push(link);
         }
         if is_placed {
-            self.check_floor(&chain, &links, &places)?;
+            self.check_floor(&first.chain, &links, &places)?;
         }
-        let hand = self.hand(&layout, bodies, tool, finger)?;
-        let finger_limit = tree.variables().get(finger).map_or(JointLimit::UNLIMITED, |v| v.limit);
-        let levers_at =
-            |place: &Place, corners: &[Point3<f64>]| Levers::new(&chain, &limits, place, finger_limit, corners);
+        let finger = |of: ArmTables<'_>| {
+            let variable = tree.variable_index(&of.gripper.joint).and_then(|index| tree.variables().get(index));
+            variable.map_or(JointLimit::UNLIMITED, |v| v.limit)
+        };
+        let fingers = [finger(file.first_arm()), file.second_arm().map_or(JointLimit::UNLIMITED, finger)];
+        let carrier = |owner: usize| second.as_ref().filter(|_| owner == 1).unwrap_or(&first).carrier(&limits, fingers);
+        let levers = places.iter().zip(&links).zip(&owners);
         let levers: Vec<_> =
-            places.iter().zip(&links).map(|(place, link)| levers_at(place, &corners(&link.body))).collect();
-        let at_tool = Place { anchor: chain.joints.len(), steps: Vec::new(), offset: chain.wrist_from_tool };
-        let tool_levers = levers_at(&at_tool, &[Point3::origin()]);
-        let weights_m = tool_levers.arm.iter().map(|lever| (BENT * lever).max(LEAST_WEIGHT_M)).collect();
-        let self_pairs = pairs::pairs((&self.source, self.semantic.as_ref()), tree, &numbers, &places, &links)?;
-        let drives = self.source.file.base.kind.drives();
-        let ring = Ring::new(&chain, &limits, (!drives).then_some(base));
-        let speeds = self.speeds(tree, &layout)?;
+            levers.map(|((place, link), owner)| Levers::new(&carrier(*owner), place, &corners(&link.body))).collect();
+        let tool_levers = |skeleton: &Skeleton<'_>| {
+            let chain = &skeleton.chain;
+            let at_tool = Place { anchor: chain.joints.len(), steps: Vec::new(), offset: chain.wrist_from_tool };
+            Levers::new(&skeleton.carrier(&limits, fingers), &at_tool, &[Point3::origin()])
+        };
+        let of_tools = (tool_levers(&first), second.as_ref().map(tool_levers));
+        let farthest = |(joint, lever): (usize, &f64)| {
+            let other = of_tools.1.as_ref().and_then(|levers| levers.arm.get(joint));
+            other.map_or(*lever, |other| lever.max(*other))
+        };
+        let weights_m = of_tools.0.arm.iter().enumerate().map(farthest);
+        let weights_m = weights_m.map(|lever| (BENT * lever).max(LEAST_WEIGHT_M)).collect();
+        let base = (!file.base.kind.drives()).then_some(base);
+        let first = self.arm(first, of_tools.0, bodies, base)?;
+        let second =
+            second.zip(of_tools.1).map(|(second, levers)| self.arm(second, levers, bodies, base)).transpose()?;
+        let semantic = self.semantic.as_ref();
+        let self_pairs = pairs::pairs((&self.source, semantic), tree, &numbers, (&places, &owners), &links)?;
+        let speeds = self.speeds(tree)?;
         let postures = self.postures(&limits)?;
-        let file = &self.source.file;
-        Ok(FileRobot {
+        let at_home = self.home(&postures)?;
+        let least = |of: fn(&PlannedArm) -> f64| second.iter().map(of).fold(of(&first), f64::min);
+        let mut robot = FileRobot {
             base_kind: file.base.kind,
-            hand,
+            payload_kg: least(|arm| arm.payload_kg),
+            push_force_n: least(|arm| arm.push_force_n),
+            first,
+            second,
             links,
             places,
+            owners,
             levers,
-            tool_levers,
             self_pairs,
-            inverse,
-            ring,
-            few: FewJoints::new(&chain, &limits).map_err(unsolvable)?,
-            ties: ties(&chain),
+            drivers,
+            idle: Fingers::default(),
             speeds,
             weights_m,
             limits,
-            chain,
-            payload_kg: file.arm.payload_kg,
-            push_force_n: file.arm.push_force_n,
             postures,
             home: file.home.clone(),
+            at_home,
+        };
+        let idle_m = robot.idle_gap_m();
+        for (slot, arm) in robot.idle.iter_mut().zip(std::iter::once(&robot.first).chain(&robot.second)) {
+            *slot = arm.hand.opening.joint(idle_m);
+        }
+        Ok(robot)
+    }
+
+    /// The chain of one arm.
+    fn skeleton<'a>(
+        &'a self,
+        (tree, drivers): (&'a KinematicTree, &'a [Driver]),
+        (tables, amended): (ArmTables<'a>, &'a AmendedArm),
+        kind: Limits,
+    ) -> Result<Skeleton<'a>, RobotFileError> {
+        let no_layout = || self.source.located(Fault::new(tables.key("arm"), "does not fit the description"));
+        let layout = Self::layout(tree, drivers, amended).ok_or_else(no_layout)?;
+        let tool = tree.link_index(&amended.tool_link).ok_or_else(no_layout)?;
+        let chain = layout.chain(tool).ok_or_else(no_layout)?;
+        let inverse = Inverse::new(&layout, &amended.tool_link, kind);
+        let inverse = inverse.map_err(|error| self.unsolvable(tables, &error))?;
+        let first = &self.amended.first.joints;
+        let count = amended.joints.len();
+        // The chain of the inverse begins at the rail.
+        if inverse.limits().len() != count {
+            let why = format!(
+                "names `{}`: between it and the rail is a joint that rests; let the arm begin above that joint",
+                tables.arm.from
+            );
+            return Err(self.source.located(Fault::new(tables.key("arm.from"), why)));
+        }
+        let shared = amended.joints.iter().take_while(|name| first.contains(name)).count();
+        let own = if shared == count { Own::first(count) } else { Own::second(shared, first.len(), count) };
+        Ok(Skeleton { tables, amended, layout, tool, chain, inverse, own })
+    }
+
+    /// The inverse kinematics of an arm cannot be made.
+    fn unsolvable(&self, tables: ArmTables<'_>, error: &KinematicsError) -> RobotFileError {
+        self.source.located(Fault::new(tables.key("arm.to"), format!("cannot be used: {error}")))
+    }
+
+    /// The arm of a chain; `base` is where it is bolted down.
+    fn arm(
+        &self,
+        skeleton: Skeleton<'_>,
+        tool_levers: Levers,
+        bodies: &[Option<Body>],
+        base: Option<[f64; 3]>,
+    ) -> Result<PlannedArm, RobotFileError> {
+        let hand = self.hand(&skeleton, bodies)?;
+        let Skeleton { tables, chain, inverse, own, .. } = skeleton;
+        let limits = inverse.limits().to_vec();
+        Ok(PlannedArm {
+            hand,
+            tool_levers: tool_levers.of_arm(&own),
+            ring: Ring::new(&chain, &limits, base),
+            few: FewJoints::new(&chain, &limits).map_err(|error| self.unsolvable(tables, &error))?,
+            ties: ties(&chain),
+            own,
+            inverse,
+            limits,
+            chain,
+            payload_kg: tables.arm.payload_kg,
+            push_force_n: tables.arm.push_force_n,
         })
     }
 
@@ -246,17 +348,13 @@ impl Loaded {
         Ok(())
     }
 
-    /// The opening of the hand, from where the pads are.
-    fn hand(
-        &self,
-        layout: &Layout<'_>,
-        bodies: &[Option<Body>],
-        tool: usize,
-        finger: usize,
-    ) -> Result<ParallelHand, RobotFileError> {
-        let gripper = &self.source.file.gripper;
-        let refuse = |why: &str| self.source.located(Fault::new("gripper.joint", why));
+    /// The opening of a hand, from where the pads are.
+    fn hand(&self, skeleton: &Skeleton<'_>, bodies: &[Option<Body>]) -> Result<ParallelHand, RobotFileError> {
+        let Skeleton { tables, amended, layout, tool, .. } = skeleton;
+        let gripper = tables.gripper;
+        let refuse = |why: &str| self.source.located(Fault::new(tables.key("gripper.joint"), why));
         let lost = || refuse("does not move the tips");
+        let finger = layout.tree.variable_index(&gripper.joint).ok_or_else(lost)?;
         let limit = layout.tree.variables().get(finger).ok_or_else(lost)?.limit;
         let tip = |name: &String| {
             let link = layout.tree.link_index(name)?;
@@ -264,12 +362,12 @@ impl Loaded {
             let Shape::Cuboid { half_extents, .. } = &part.shape else { return None };
             Some((layout.place(link)?, part.body_from_shape, *half_extents))
         };
-        let [Some(left), Some(right)] = [&self.amended.tip_links[0], &self.amended.tip_links[1]].map(tip) else {
+        let [Some(left), Some(right)] = amended.tip_links.each_ref().map(tip) else {
             return Err(lost());
         };
-        let wrist_from_tool = layout.place(tool).ok_or_else(lost)?.in_anchor(&[], 0.0);
+        let wrist_from_tool = layout.place(*tool).ok_or_else(lost)?.in_anchor(&[], Fingers::default());
         let centre = |(place, link_from_box, _): &(Place, Isometry3<f64>, _), q: f64| {
-            wrist_from_tool.inverse() * (place.in_anchor(&[], q) * link_from_box * Point3::origin())
+            wrist_from_tool.inverse() * (place.in_anchor(&[], [q; 2]) * link_from_box * Point3::origin())
         };
         let gap = |q: f64| centre(&left, q).y - left.2.y - (centre(&right, q).y + right.2.y);
         let end = |q: f64| centre(&left, q).x + left.2.x;
@@ -291,34 +389,44 @@ impl Loaded {
         })
     }
 
-    fn speeds(&self, tree: &KinematicTree, layout: &Layout<'_>) -> Result<Speeds, RobotFileError> {
-        let file = &self.source.file;
-        let count = layout.arm_links.len();
-        for (key, list) in [("arm.speeds", &file.arm.speeds), ("arm.accelerations", &file.arm.accelerations)] {
-            if let Some(list) = list.as_ref().filter(|list| list.len() != count) {
-                let why = format!("has {} entries, must have {count}, one for each joint of the arm", list.len());
-                return Err(self.source.located(Fault::new(key, why)));
-            }
-        }
+    fn speeds(&self, tree: &KinematicTree) -> Result<Speeds, RobotFileError> {
         let allowed = |name: &String| {
             let variable = tree.variable_index(name).and_then(|index| tree.variables().get(index));
             let most = variable.map_or(0.0, |v| v.max_velocity);
             if most > 0.0 { SPEED_SHARE * most } else { UNKNOWN_SPEED }
         };
-        let joints = file.arm.speeds.clone().unwrap_or_else(|| self.amended.arm_joints.iter().map(allowed).collect());
-        Ok(Speeds { joints, base: [file.base.speed, file.base.loaded_speed] })
+        let mut joints = Vec::new();
+        for (tables, amended) in self.source.file.arms().zip(self.amended.arms()) {
+            let count = amended.joints.len();
+            let arm = tables.arm;
+            for (key, list) in [("arm.speeds", &arm.speeds), ("arm.accelerations", &arm.accelerations)] {
+                if let Some(list) = list.as_ref().filter(|list| list.len() != count) {
+                    let why = format!("has {} entries, must have {count}, one for each joint of the arm", list.len());
+                    return Err(self.source.located(Fault::new(tables.key(key), why)));
+                }
+            }
+            let speeds = arm.speeds.clone().unwrap_or_else(|| amended.joints.iter().map(allowed).collect());
+            // A joint of both arms moves as the first says.
+            let shared = self.amended.arm_joints.get(..joints.len()).unwrap_or_default();
+            let new = amended.joints.iter().zip(speeds).filter(|(name, _)| !shared.contains(name));
+            let new: Vec<f64> = new.map(|(_, speed)| speed).collect();
+            joints.extend(new);
+        }
+        let base = &self.source.file.base;
+        Ok(Speeds { joints, base: [base.speed, base.loaded_speed] })
     }
 
-    /// The postures of the file, each with as many joints as the arm.
-    fn postures(&self, limits: &[JointLimit]) -> Result<std::collections::BTreeMap<String, Joints>, RobotFileError> {
+    /// The postures of the file, each with as many joints as the robot.
+    fn postures(&self, limits: &[JointLimit]) -> Result<BTreeMap<String, Joints>, RobotFileError> {
         let file = &self.source.file;
-        let mut postures = std::collections::BTreeMap::new();
+        let mut postures = BTreeMap::new();
+        let whose = if file.second.is_some() { "both arms" } else { "the arm" };
         for (name, values) in &file.postures {
             let refuse = |why: String| self.source.located(Fault::new(format!("postures.{name}"), why));
             let count = limits.len();
             let joints = Joints::from_values(values).filter(|_| values.len() == count);
             let joints = joints.ok_or_else(|| {
-                refuse(format!("has {} entries, must have {count}, one for each joint of the arm", values.len()))
+                refuse(format!("has {} entries, must have {count}, one for each joint of {whose}", values.len()))
             })?;
             let names = values.iter().zip(limits).zip(&self.amended.arm_joints);
             for ((value, limit), joint) in names {
@@ -329,14 +437,17 @@ impl Loaded {
             }
             postures.insert(name.clone(), joints);
         }
-        if !postures.contains_key(&file.home) {
-            let known = postures.keys().map(String::as_str);
-            let near = crate::problem_file::suggest::nearest(&file.home, known).map(str::to_owned);
-            let hint = crate::problem_file::suggest::hint(near.as_deref());
-            let why = format!("names the posture `{}`, which is not among `postures`{hint}", file.home);
-            return Err(self.source.located(Fault::new("home", why)));
-        }
         Ok(postures)
+    }
+
+    /// The posture in which the robot starts.
+    fn home(&self, postures: &BTreeMap<String, Joints>) -> Result<Joints, RobotFileError> {
+        let home = &self.source.file.home;
+        postures.get(home).copied().ok_or_else(|| {
+            let near = nearest(home, postures.keys().map(String::as_str)).map(str::to_owned);
+            let why = format!("names the posture `{home}`, which is not among `postures`{}", hint(near.as_deref()));
+            self.source.located(Fault::new("home", why))
+        })
     }
 }
 
@@ -349,9 +460,37 @@ pub(super) fn lowest_m(body: &Body, world_from_body: &Isometry3<f64>) -> f64 {
     parts.fold(f64::INFINITY, f64::min)
 }
 
-/// What carries a link along.
-fn group(place: &Place, joints: usize) -> LinkGroup {
-    let is_finger = place.steps.iter().any(|step| step.driver == Driver::Finger);
+/// What of an arm is known before its hand.
+struct Skeleton<'a> {
+    tables: ArmTables<'a>,
+    amended: &'a AmendedArm,
+    layout: Layout<'a>,
+    /// The link of the tool frame.
+    tool: usize,
+    chain: ArmChain,
+    inverse: Inverse,
+    own: Own,
+}
+
+impl Skeleton<'_> {
+    fn carrier<'a>(&'a self, limits: &'a [JointLimit], fingers: [JointLimit; 2]) -> Carrier<'a> {
+        Carrier { chain: &self.chain, own: self.own, limits, fingers }
+    }
+}
+
+/// Does the second hand, or a joint that is not among those of the first arm, which has so many, move a link? The place is that which
+/// the link has for the first arm.
+fn is_of_second(place: &Place, first: usize) -> bool {
+    place.steps.iter().any(|step| match step.driver {
+        Driver::Arm(joint) => joint >= first,
+        Driver::Finger(hand) => hand == 1,
+        Driver::Rests(_) => false,
+    })
+}
+
+/// What carries a link of this arm along.
+fn group(place: &Place, joints: usize, arm: usize) -> LinkGroup {
+    let is_finger = place.steps.iter().any(|step| step.driver == Driver::Finger(arm));
     match place.anchor {
         _ if is_finger => LinkGroup::Finger,
         _ if !place.steps.is_empty() => LinkGroup::Arm,

@@ -11,12 +11,12 @@ use crate::robot_file::error::Fault;
 use crate::robot_file::{RobotFileError, Source};
 
 /// All pairs that can move against each other, but for neighbours, parts of one hand, and those that the file or its SRDF says to
-/// ignore; indices into `links`. `numbers` are the links in the tree.
+/// ignore; indices into `links`. `numbers` are the links in the tree, `owners` the arms that they belong to.
 pub(super) fn pairs(
     (source, semantic): (&Source, Option<&Semantic>),
     tree: &KinematicTree,
     numbers: &[usize],
-    places: &[Place],
+    (places, owners): (&[Place], &[usize]),
     links: &[RobotLink],
 ) -> Result<Vec<(usize, usize)>, RobotFileError> {
     for (index, pair) in source.file.ignore.iter().enumerate() {
@@ -38,8 +38,11 @@ pub(super) fn pairs(
         ignored.extend(of_link(a).into_iter().flat_map(|a| others.iter().map(move |b| (a.min(*b), a.max(*b)))));
     }
     let is_hand = |link: usize| links.get(link).is_some_and(|l| matches!(l.group, LinkGroup::Hand | LinkGroup::Finger));
+    let is_of_one_arm = |a: usize, b: usize| owners.get(a) == owners.get(b);
     let is_rigid = |a: usize, b: usize| match (places.get(a), places.get(b)) {
-        (Some(a), Some(b)) => a.anchor == b.anchor && a.steps.is_empty() && b.steps.is_empty(),
+        (Some(at), Some(bt)) => {
+            is_of_one_arm(a, b) && at.anchor == bt.anchor && at.steps.is_empty() && bt.steps.is_empty()
+        }
         _ => false,
     };
     let all = (0..links.len()).flat_map(|a| (a + 1..links.len()).map(move |b| (a, b)));
@@ -48,7 +51,7 @@ pub(super) fn pairs(
             (Some(a), Some(b)) => above(tree, numbers, *a) == Some(*b) || above(tree, numbers, *b) == Some(*a),
             _ => false,
         };
-        let is_of_hand = is_hand(a) && is_hand(b);
+        let is_of_hand = is_hand(a) && is_hand(b) && is_of_one_arm(a, b);
         !(is_rigid(a, b) || is_of_hand || neighbours() || ignored.contains(&(a, b)))
     });
     Ok(kept.collect())

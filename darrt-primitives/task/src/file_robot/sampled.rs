@@ -22,7 +22,7 @@ pub(super) enum Rule {
     Checked,
     /// Nothing that is planned moves them against each other, or they are neighbours.
     Structure,
-    /// Both are of the hand.
+    /// Both are of one hand.
     Hand,
     /// The robot file says so.
     File,
@@ -111,7 +111,8 @@ pub(super) fn pairs(loaded: &Loaded, robot: &FileRobot) -> Result<Pairs, RobotFi
 
 /// The tip that a pad covers; any other link is itself.
 fn of_pad<'a>(file: &RobotFile, name: &'a str) -> &'a str {
-    let tip = name.strip_suffix("_pad").filter(|tip| file.gripper.tips.iter().any(|known| known == tip));
+    let is_tip = |tip: &&str| file.arms().any(|tables| tables.gripper.tips.iter().any(|known| known == tip));
+    let tip = name.strip_suffix("_pad").filter(is_tip);
     tip.unwrap_or(name)
 }
 
@@ -128,5 +129,7 @@ fn rule(loaded: &Loaded, robot: &FileRobot, links: [usize; 2], names: &[String; 
     let is_hand = |link: usize| {
         robot.links().get(link).is_some_and(|link| matches!(link.group, LinkGroup::Hand | LinkGroup::Finger))
     };
-    if links.into_iter().all(is_hand) { Rule::Hand } else { Rule::Structure }
+    let [a, b] = links;
+    let is_one_hand = is_hand(a) && is_hand(b) && robot.hand_of_link(a) == robot.hand_of_link(b);
+    if is_one_hand { Rule::Hand } else { Rule::Structure }
 }

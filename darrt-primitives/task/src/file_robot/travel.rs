@@ -4,12 +4,12 @@ use darrt_geom::Body;
 use darrt_primitives::kinematics::JointLimit;
 use nalgebra::{Isometry3, Point3};
 
-use super::chain::{ArmChain, Driver, Joint, Place};
+use super::chain::{ArmChain, Driver, Joint, Own, Place};
 
 /// Bounds for one link, or for what the hand holds.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Levers {
-    /// Metres per unit of each joint of the arm.
+    /// Metres per unit of each joint of the robot.
     pub(super) arm: Vec<f64>,
     /// Metres from the vertical axis of the base.
     pub(super) base: f64,
@@ -28,23 +28,30 @@ pub(super) fn corners(body: &Body) -> Vec<Point3<f64>> {
     parts.collect()
 }
 
+/// An arm with what bounds the ways of all joints.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Carrier<'a> {
+    pub(super) chain: &'a ArmChain,
+    pub(super) own: Own,
+    /// Of all joints of the robot.
+    pub(super) limits: &'a [JointLimit],
+    /// Of the joints that open the hands.
+    pub(super) fingers: [JointLimit; 2],
+}
+
 impl Levers {
-    /// Of what is at `place` and within these corners (link frame).
-    pub(super) fn new(
-        chain: &ArmChain,
-        limits: &[JointLimit],
-        place: &Place,
-        finger: JointLimit,
-        corners: &[Point3<f64>],
-    ) -> Self {
-        let mut arm = vec![0.0_f64; chain.joints.len()];
+    /// Of what is at `place` of this arm and within these corners (link frame).
+    pub(super) fn new(of: &Carrier<'_>, place: &Place, corners: &[Point3<f64>]) -> Self {
+        let Carrier { chain, own, limits, fingers } = *of;
+        let mut arm = vec![0.0_f64; limits.len()];
         let reach = |at: &Isometry3<f64>| corners.iter().map(|corner| (at * corner).coords.norm()).fold(0.0, f64::max);
         // From the link inwards: how far its points are from the origin of the next frame.
         let mut norm = reach(&place.offset);
         for step in place.steps.iter().rev() {
             let limit = match step.driver {
                 Driver::Arm(index) => limits.get(index).copied().unwrap_or(JointLimit::UNLIMITED),
-                Driver::Finger | Driver::Rests(_) => finger,
+                Driver::Finger(hand) => fingers.get(hand).copied().unwrap_or(JointLimit::UNLIMITED),
+                Driver::Rests(value) => JointLimit::new(value, value),
             };
             if let Driver::Arm(index) = step.driver
                 && let Some(slot) = arm.get_mut(index)
@@ -69,10 +76,10 @@ impl Levers {
         for index in (0..place.anchor.min(chain.joints.len())).rev() {
             let Some(joint) = chain.joints.get(index) else { continue };
             let radius = about.take().unwrap_or(f64::INFINITY).min(norm);
-            if let Some(slot) = arm.get_mut(index) {
+            if let Some(slot) = arm.get_mut(own.index(index)) {
                 *slot += if joint.slides { 1.0 } else { radius };
             }
-            let limit = limits.get(index).copied().unwrap_or(JointLimit::UNLIMITED);
+            let limit = limits.get(own.index(index)).copied().unwrap_or(JointLimit::UNLIMITED);
             let slide_m = slide(joint, limit.lower.abs().max(limit.upper.abs()));
             let beyond = norm + slide_m;
             norm = beyond + joint.before.translation.vector.norm();
@@ -88,6 +95,11 @@ impl Levers {
             norm
         };
         Self { arm, base }
+    }
+
+    /// The same of what the arm holds, with a lever for each joint of the arm alone.
+    pub(super) fn of_arm(self, own: &Own) -> Self {
+        Self { arm: own.indices().filter_map(|joint| self.arm.get(joint).copied()).collect(), ..self }
     }
 
     /// Metres, for these ways of the joints, of the base and of its heading; what is held reaches so much farther.

@@ -12,7 +12,7 @@ use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::error::Fault;
 use super::straight::straighten;
-use super::{BaseKind, RobotFile, pads};
+use super::{ArmTables, BaseKind, RobotFile, pads, two_arms};
 use std::path::PathBuf;
 
 /// Where a hand is in a plane, and how it is turned there.
@@ -27,18 +27,36 @@ const RAIL: &str = "rail";
 pub struct Amended {
     /// Links, joints and shapes.
     pub description: RobotDescription,
-    /// The joints of the arm, from the base outwards.
+    /// The joints of all arms: those of the first, then those of the second that the first has not.
     pub arm_joints: Vec<String>,
+    /// The first arm.
+    pub first: AmendedArm,
+    /// The second, if there is one.
+    pub second: Option<AmendedArm>,
+    /// Values of the joints that no arm and no hand has (rad or m).
+    pub rest: Vec<(String, f64)>,
+    /// Joints whose angles were made right ones, which was meant: only of an arm of fewer joints than six.
+    pub straightened: Vec<String>,
+}
+
+/// Which part of a completed description is one of the arms.
+#[derive(Debug, Clone)]
+pub struct AmendedArm {
+    /// Its joints, from the base outwards.
+    pub joints: Vec<String>,
     /// The link whose frame is the tool frame.
     pub tool_link: String,
     /// The link that the last joint of the arm moves.
     pub wrist_link: String,
     /// The links with the pads: boxes along the axes of the tool; that on the side of +y first.
     pub tip_links: [String; 2],
-    /// Values of the joints that neither arm nor hand has (rad or m).
-    pub rest: Vec<(String, f64)>,
-    /// Joints whose angles were made right ones, which was meant: only of an arm of fewer joints than six.
-    pub straightened: Vec<String>,
+}
+
+impl Amended {
+    /// The arms, the first one first.
+    pub fn arms(&self) -> impl Iterator<Item = &AmendedArm> {
+        std::iter::once(&self.first).chain(&self.second)
+    }
 }
 
 /// Completes `description`; `mesh_path` says where the file of a mesh is.
@@ -53,47 +71,77 @@ pub fn amend(
     if let Some(hand) = &file.hand {
         hand.add(&mut description)?;
     }
-    let mut arm_joints = arm_joints(file, &description)?;
-    let wrist = arm_joints.last().and_then(|name| joint_index(&description, name));
-    let wrist = wrist.ok_or_else(|| Fault::new("arm.to", "is moved by no joint of the arm"))?;
-    let wrist_link = description.joints[wrist].child;
-    follow(file, &mut description)?;
-    let tool = link_index(&description, "tool.link", &file.tool.link)?;
-    if !is_rigid_to(&description, tool, wrist_link) {
-        let why = format!("names `{}`, which is not rigid to the last link that the arm moves", file.tool.link);
-        return Err(Fault::new("tool.link", why));
+    let mut first = with_tool(file.first_arm(), &mut description)?;
+    let mut second = file.second_arm().map(|tables| with_tool(tables, &mut description)).transpose()?;
+    if let Some(joint) = stand(file, &mut description)? {
+        for arm in std::iter::once(&mut first).chain(&mut second) {
+            arm.joints.insert(0, joint.clone());
+        }
     }
-    let link_from_tool = pose(file.tool.xyz, file.tool.rpy);
+    let pair = file.second_arm().zip(second.as_ref());
+    check_count(file.first_arm(), &first, pair.is_some())?;
+    if let Some((tables, second)) = pair {
+        check_count(tables, second, true)?;
+        two_arms::check((file.first_arm(), &first), (tables, second), &description)?;
+    }
+    let others = second.iter().flat_map(|second| &second.joints).filter(|name| !first.joints.contains(name));
+    let arm_joints: Vec<String> = first.joints.iter().chain(others).cloned().collect();
+    if let Some((tables, _)) = pair.filter(|_| arm_joints.len() > MAX_JOINTS) {
+        let why = format!("makes it {} joints of both arms, at most {MAX_JOINTS} are planned with", arm_joints.len());
+        return Err(Fault::new(tables.key("arm.to"), why));
+    }
+    let is_few = first.joints.len() < ANY_POSE;
+    let tool = link_index(&description, "tool.link", &first.tool_link)?;
+    let straightened = if is_few { straighten(&mut description, tool) } else { Vec::new() };
+    let rest = rest(file, &description, &arm_joints)?;
+    for (tables, arm) in file.arms().zip(std::iter::once(&mut first).chain(&mut second)) {
+        arm.tip_links = pads::box_in(tables, &mut description, &arm.tool_link, &arm.wrist_link, mesh_path)?;
+    }
+    Ok(Amended { description, arm_joints, first, second, rest, straightened })
+}
+
+/// An arm with its tool frame and the joints that follow the one of its hand; its tips are still those of the file.
+fn with_tool(of: ArmTables<'_>, description: &mut RobotDescription) -> Result<AmendedArm, Fault> {
+    let joints = arm_joints(of, description)?;
+    let wrist = joints.last().and_then(|name| joint_index(description, name));
+    let wrist = wrist.ok_or_else(|| Fault::new(of.key("arm.to"), "is moved by no joint of the arm"))?;
+    let wrist_link = description.joints[wrist].child;
+    follow(of, description)?;
+    let tool = link_index(description, &of.key("tool.link"), &of.tool.link)?;
+    if !is_rigid_to(description, tool, wrist_link) {
+        let why = format!("names `{}`, which is not rigid to the last link that the arm moves", of.tool.link);
+        return Err(Fault::new(of.key("tool.link"), why));
+    }
+    let link_from_tool = pose(of.tool.xyz, of.tool.rpy);
     let tool_link = if link_from_tool == Isometry3::identity() {
-        file.tool.link.clone()
+        of.tool.link.clone()
     } else {
-        let name = free_name(&description, "tool");
-        add_fixed(&mut description, tool, &name, link_from_tool);
+        let name = free_name(description, "tool");
+        add_fixed(description, tool, &name, link_from_tool);
         name
     };
-    if let Some(joint) = stand(file, &mut description)? {
-        arm_joints.insert(0, joint);
-    }
-    if arm_joints.len() > MAX_JOINTS {
-        let why =
-            format!("is moved by {} joints below `arm.from`, at most {MAX_JOINTS} are planned with", arm_joints.len());
-        return Err(Fault::new("arm.to", why));
-    }
-    if arm_joints.len() < LEAST_JOINTS {
-        let why = format!(
-            "is moved by {} joints: an arm has at least {LEAST_JOINTS}, a rail among them, for a hand that comes to a place and turns \
-             there",
-            arm_joints.len()
-        );
-        return Err(Fault::new("arm.to", why));
-    }
-    let is_few = arm_joints.len() < ANY_POSE;
-    let tool = link_index(&description, "tool.link", &tool_link)?;
-    let straightened = if is_few { straighten(&mut description, tool) } else { Vec::new() };
     let wrist_link = description.links[wrist_link].name.to_string();
-    let rest = rest(file, &description, &arm_joints)?;
-    let tip_links = pads::box_in(file, &mut description, &tool_link, &wrist_link, mesh_path)?;
-    Ok(Amended { description, arm_joints, tool_link, wrist_link, tip_links, rest, straightened })
+    Ok(AmendedArm { joints, tool_link, wrist_link, tip_links: of.gripper.tips.clone() })
+}
+
+/// An arm has neither more joints than are planned with nor fewer than are of use; one of two has enough for any pose.
+fn check_count(of: ArmTables<'_>, arm: &AmendedArm, is_of_two: bool) -> Result<(), Fault> {
+    let count = arm.joints.len();
+    let why = if count > MAX_JOINTS {
+        format!("is moved by {count} joints below `{}`, at most {MAX_JOINTS} are planned with", of.key("arm.from"))
+    } else if count < LEAST_JOINTS {
+        format!(
+            "is moved by {count} joints: an arm has at least {LEAST_JOINTS}, a rail among them, for a hand that comes to a place and \
+             turns there"
+        )
+    } else if is_of_two && count < ANY_POSE {
+        format!(
+            "is moved by {count} joints: each arm of a robot with two has at least {ANY_POSE}, for a hand that comes to any pose"
+        )
+    } else {
+        return Ok(());
+    };
+    Err(Fault::new(of.key("arm.to"), why))
 }
 
 /// The pose at x, y, z, turned by roll, pitch and yaw.
@@ -115,43 +163,49 @@ fn named_joint(description: &RobotDescription, key: &str, name: &str) -> Result<
     found.ok_or_else(|| Fault::unknown(key, "joint", name, description.joints.iter().map(|joint| &*joint.name)))
 }
 
-/// The movable joints between the ends of the arm, from the base outwards.
-fn arm_joints(file: &RobotFile, description: &RobotDescription) -> Result<Vec<String>, Fault> {
-    let from = link_index(description, "arm.from", &file.arm.from)?;
-    let mut link = link_index(description, "arm.to", &file.arm.to)?;
+/// The movable joints between the ends of an arm, from the base outwards.
+fn arm_joints(of: ArmTables<'_>, description: &RobotDescription) -> Result<Vec<String>, Fault> {
+    let from = link_index(description, &of.key("arm.from"), &of.arm.from)?;
+    let mut link = link_index(description, &of.key("arm.to"), &of.arm.to)?;
     let mut joints = Vec::new();
     while link != from {
         let Some(joint) = description.joints.iter().find(|joint| joint.child == link) else {
-            let why = format!("names `{}`, which is not below `{}`", file.arm.to, file.arm.from);
-            return Err(Fault::new("arm.to", why));
+            let why = format!("names `{}`, which is not below `{}`", of.arm.to, of.arm.from);
+            return Err(Fault::new(of.key("arm.to"), why));
         };
         if joint.kind != JointKind::Fixed {
             if joint.mimic.is_some() {
                 let why =
                     format!("is moved by `{}`, which follows another joint; an arm's joints are free", joint.name);
-                return Err(Fault::new("arm.to", why));
+                return Err(Fault::new(of.key("arm.to"), why));
             }
             let (low, high) = (joint.limit.lower, joint.limit.upper);
             if low.is_finite() != high.is_finite() || (joint.kind == JointKind::Sliding && !low.is_finite()) {
-                return Err(Fault::new("arm.to", format!("is moved by `{}`, whose limits are not finite", joint.name)));
+                return Err(Fault::new(
+                    of.key("arm.to"),
+                    format!("is moved by `{}`, whose limits are not finite", joint.name),
+                ));
             }
             joints.push(joint.name.to_string());
         }
         link = joint.parent;
     }
     if joints.is_empty() {
-        return Err(Fault::new("arm.to", format!("names `{}`, which no joint moves against `arm.from`", file.arm.to)));
+        return Err(Fault::new(
+            of.key("arm.to"),
+            format!("names `{}`, which no joint moves against `{}`", of.arm.to, of.key("arm.from")),
+        ));
     }
     joints.reverse();
     Ok(joints)
 }
 
 /// Makes the joints of `gripper.follow` follow.
-fn follow(file: &RobotFile, description: &mut RobotDescription) -> Result<(), Fault> {
-    let gripper = &file.gripper;
-    let driver = named_joint(description, "gripper.joint", &gripper.joint)?;
+fn follow(of: ArmTables<'_>, description: &mut RobotDescription) -> Result<(), Fault> {
+    let gripper = of.gripper;
+    let driver = named_joint(description, &of.key("gripper.joint"), &gripper.joint)?;
     let joint = &description.joints[driver];
-    let refuse = |why: String| Err(Fault::new("gripper.joint", format!("names `{}`, {why}", gripper.joint)));
+    let refuse = |why: String| Err(Fault::new(of.key("gripper.joint"), format!("names `{}`, {why}", gripper.joint)));
     if joint.kind == JointKind::Fixed {
         return refuse("which does not move".to_owned());
     }
@@ -162,7 +216,7 @@ fn follow(file: &RobotFile, description: &mut RobotDescription) -> Result<(), Fa
         return refuse("whose limits are not two finite ends".to_owned());
     }
     for (name, follow) in &gripper.follow {
-        let key = format!("gripper.follow.{name}");
+        let key = of.key(&format!("gripper.follow.{name}"));
         let index = named_joint(description, &key, name)?;
         if index == driver || description.joints[index].kind == JointKind::Fixed {
             return Err(Fault::new(key, "is a joint that cannot follow the gripper's"));
@@ -278,7 +332,8 @@ fn stand(file: &RobotFile, description: &mut RobotDescription) -> Result<Option<
 
 /// Where all other joints stand.
 fn rest(file: &RobotFile, description: &RobotDescription, arm: &[String]) -> Result<Vec<(String, f64)>, Fault> {
-    let is_mine = |name: &str| name == file.gripper.joint || arm.iter().any(|joint| joint == name);
+    let is_mine =
+        |name: &str| file.arms().any(|tables| tables.gripper.joint == name) || arm.iter().any(|joint| joint == name);
     for (name, value) in &file.rest {
         let key = format!("rest.{name}");
         let joint = &description.joints[named_joint(description, &key, name)?];

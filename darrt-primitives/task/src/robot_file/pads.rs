@@ -7,7 +7,7 @@ use darrt_primitives::kinematics::urdf::{Geometry, PlacedGeometry};
 use darrt_primitives::kinematics::{KinematicTree, RobotDescription};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
-use super::RobotFile;
+use super::ArmTables;
 use super::amend::{add_fixed, link_index, solids};
 use super::error::Fault;
 
@@ -35,15 +35,15 @@ struct Cover {
 
 /// Gives both tips a box along the axes of the tool that covers their shapes, in place of these. The links with the boxes.
 pub(super) fn box_in(
-    file: &RobotFile,
+    of: ArmTables<'_>,
     description: &mut RobotDescription,
     tool_link: &str,
     wrist_link: &str,
     mesh_path: &dyn Fn(&str) -> Option<PathBuf>,
 ) -> Result<[String; 2], Fault> {
     let links = [
-        link_index(description, "gripper.tips", &file.gripper.tips[0])?,
-        link_index(description, "gripper.tips", &file.gripper.tips[1])?,
+        link_index(description, &of.key("gripper.tips"), &of.gripper.tips[0])?,
+        link_index(description, &of.key("gripper.tips"), &of.gripper.tips[1])?,
     ];
     // The tips alone: other links may have large meshes.
     let mut tips = description.clone();
@@ -53,9 +53,9 @@ pub(super) fn box_in(
         }
     }
     let (tree, bodies) = solids(&tips, mesh_path)?;
-    let cover = |name: &str| cover(file, &tree, &bodies, (tool_link, wrist_link), name);
-    let mut covers = [cover(&file.gripper.tips[0])?, cover(&file.gripper.tips[1])?];
-    check_symmetry(file, &covers)?;
+    let cover = |name: &str| cover(of, &tree, &bodies, (tool_link, wrist_link), name);
+    let mut covers = [cover(&of.gripper.tips[0])?, cover(&of.gripper.tips[1])?];
+    check_symmetry(of, &covers)?;
     // The end of both, and as wide to one side of the tool frame as to the other.
     let end = covers.iter().map(|c| c.at[0].x + c.high.x).fold(f64::NEG_INFINITY, f64::max);
     let half = covers.iter().map(|c| (c.at[0].z + c.high.z).max(-(c.at[0].z + c.low.z))).fold(0.0, f64::max);
@@ -67,7 +67,7 @@ pub(super) fn box_in(
         cover.is_box &= is_same;
         (cover.high.x, cover.high.z, cover.low.z) = (x, half - z, -half - z);
     }
-    let mut names = file.gripper.tips.clone();
+    let mut names = of.gripper.tips.clone();
     for ((name, link), cover) in names.iter_mut().zip(links).zip(&covers) {
         if cover.is_box {
             continue;
@@ -87,8 +87,8 @@ pub(super) fn box_in(
 }
 
 /// The pose of `link` in the tool frame, the hand at its joint's lower and upper limit, all else at rest.
-fn in_tool(file: &RobotFile, tree: &KinematicTree, tool: usize, link: usize) -> Option<[Isometry3<f64>; 2]> {
-    let finger = tree.variable_index(&file.gripper.joint)?;
+fn in_tool(of: ArmTables<'_>, tree: &KinematicTree, tool: usize, link: usize) -> Option<[Isometry3<f64>; 2]> {
+    let finger = tree.variable_index(&of.gripper.joint)?;
     let limit = tree.variables().get(finger)?.limit;
     let mut poses = vec![Isometry3::identity(); tree.link_count()];
     let mut at = |value: f64| {
@@ -101,24 +101,25 @@ fn in_tool(file: &RobotFile, tree: &KinematicTree, tool: usize, link: usize) -> 
 }
 
 fn cover(
-    file: &RobotFile,
+    of: ArmTables<'_>,
     tree: &KinematicTree,
     bodies: &[Option<Body>],
     (tool_link, wrist_link): (&str, &str),
     name: &str,
 ) -> Result<Cover, Fault> {
-    let refuse = |why: String| Fault::new("gripper.tips", format!("names `{name}`, {why}"));
+    let refuse = |why: String| Fault::new(of.key("gripper.tips"), format!("names `{name}`, {why}"));
     let index = |name: &str| tree.link_index(name).ok_or_else(|| refuse(format!("and there is no link `{name}`")));
     let (link, tool, wrist) = (index(name)?, index(tool_link)?, index(wrist_link)?);
     let mut above = link;
     while above != wrist {
         above = tree.parent(above).ok_or_else(|| refuse("which the arm does not carry".to_owned()))?;
     }
-    let [closed, open] = in_tool(file, tree, tool, link).ok_or_else(|| refuse("which has no place".to_owned()))?;
+    let [closed, open] = in_tool(of, tree, tool, link).ok_or_else(|| refuse("which has no place".to_owned()))?;
     if (closed.translation.vector - open.translation.vector).norm() <= ROUNDING {
         let why = format!(
-            "which `{}` does not move; if a joint of its own moves it, see `gripper.follow`",
-            file.gripper.joint
+            "which `{}` does not move; if a joint of its own moves it, see `{}`",
+            of.gripper.joint,
+            of.key("gripper.follow")
         );
         return Err(refuse(why));
     }
@@ -155,8 +156,8 @@ fn cover(
 }
 
 /// The tool frame is in the middle between the pads, and the pads face each other.
-fn check_symmetry(file: &RobotFile, [left, right]: &[Cover; 2]) -> Result<(), Fault> {
-    let [first, second] = &file.gripper.tips;
+fn check_symmetry(of: ArmTables<'_>, [left, right]: &[Cover; 2]) -> Result<(), Fault> {
+    let [first, second] = &of.gripper.tips;
     for at in 0..2 {
         let (inner_left, inner_right) = (left.at[at].y + left.low.y, right.at[at].y + right.high.y);
         let middle = f64::midpoint(inner_left, inner_right);
@@ -166,7 +167,7 @@ fn check_symmetry(file: &RobotFile, [left, right]: &[Cover; 2]) -> Result<(), Fa
                  other, and the frame must be in their middle",
                 1e3 * middle
             );
-            return Err(Fault::new("tool.xyz", why));
+            return Err(Fault::new(of.key("tool.xyz"), why));
         }
     }
     let gaps = [0, 1].map(|at| left.at[at].y + left.low.y - right.at[at].y - right.high.y);
@@ -176,12 +177,12 @@ fn check_symmetry(file: &RobotFile, [left, right]: &[Cover; 2]) -> Result<(), Fa
              must be that on the side of +y, and y the axis along which they open",
             -1e3 * gaps[0].max(gaps[1])
         );
-        return Err(Fault::new("gripper.tips", why));
+        return Err(Fault::new(of.key("gripper.tips"), why));
     }
     let ends = [left, right].map(|tip| tip.at[0].x + tip.high.x);
     if (ends[0] - ends[1]).abs() > ENDS_M {
         let why = format!("ends {:.1} mm before `{second}` along the tool's x axis", 1e3 * (ends[1] - ends[0]));
-        return Err(Fault::new("gripper.tips", why));
+        return Err(Fault::new(of.key("gripper.tips"), why));
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use darrt_primitives::kinematics::MeshPlaces;
 
 use super::error::Fault;
-use super::{RobotFile, RobotFileError, VERSION};
+use super::{ArmTables, RobotFile, RobotFileError, VERSION};
 use crate::file_kind::FileKind;
 use crate::problem_file::arrays::check_lengths;
 use crate::problem_file::error::Flaw;
@@ -115,21 +115,12 @@ impl Source {
             let why = format!("is \"{}\", must be lower-case letters, digits, `-` and `_`", shown(&file.name));
             return Err(Fault::new("name", why));
         }
-        let positive = [
-            ("arm.payload_kg", file.arm.payload_kg, 1e4),
-            ("arm.push_force_n", file.arm.push_force_n, 1e5),
-            ("gripper.pad_length_m", file.gripper.pad_length_m, 1.0),
-            ("gripper.grip_force_n", file.gripper.grip_force_n, 1e5),
-        ];
         let speeds = [("base.speed", file.base.speed), ("base.loaded_speed", file.base.loaded_speed)];
-        let speeds = speeds.into_iter().flat_map(|(key, both)| both.map(|value| (key, value, 1e2)));
-        let gap = file.gripper.max_gap_m.map(|value| ("gripper.max_gap_m", value, 1.0));
-        let lists = [("arm.speeds", &file.arm.speeds), ("arm.accelerations", &file.arm.accelerations)];
-        let lists =
-            lists.into_iter().flat_map(|(key, list)| list.iter().flatten().map(move |value| (key, *value, 1e4)));
-        for (key, value, most) in positive.into_iter().chain(speeds).chain(gap).chain(lists) {
+        let speeds = speeds.into_iter().flat_map(|(key, both)| both.map(|value| (key.to_owned(), value, 1e2)));
+        let positive = file.arms().flat_map(|tables| arm_numbers(&tables));
+        for (key, value, most) in positive.chain(speeds) {
             if !(value > 0.0 && value <= most) {
-                return Err(wrong(key, value, &format!("above 0 and at most {most}")));
+                return Err(wrong(&key, value, &format!("above 0 and at most {most}")));
             }
         }
         let poses = [
@@ -141,7 +132,9 @@ impl Source {
             ("hand.xyz", file.hand.as_ref().map(|hand| hand.xyz).unwrap_or_default()),
             ("hand.rpy", file.hand.as_ref().map(|hand| hand.rpy).unwrap_or_default()),
         ];
-        for (key, values) in poses {
+        let second = file.second.iter().map(|second| &second.tool);
+        let second = second.flat_map(|tool| [("second.tool.xyz", tool.xyz), ("second.tool.rpy", tool.rpy)]);
+        for (key, values) in poses.into_iter().chain(second) {
             if let Some(value) = values.into_iter().find(|value| value.abs() > 1e2 || value.is_nan()) {
                 return Err(wrong(key, value, "in [-100, 100]"));
             }
@@ -151,6 +144,22 @@ impl Source {
         }
         Ok(())
     }
+}
+
+/// The numbers of an arm that must be positive, each with the most that it may be.
+fn arm_numbers(tables: &ArmTables<'_>) -> Vec<(String, f64, f64)> {
+    let ArmTables { arm, gripper, .. } = tables;
+    let positive = [
+        ("arm.payload_kg", arm.payload_kg, 1e4),
+        ("arm.push_force_n", arm.push_force_n, 1e5),
+        ("gripper.pad_length_m", gripper.pad_length_m, 1.0),
+        ("gripper.grip_force_n", gripper.grip_force_n, 1e5),
+    ];
+    let gap = gripper.max_gap_m.map(|value| ("gripper.max_gap_m", value, 1.0));
+    let lists = [("arm.speeds", &arm.speeds), ("arm.accelerations", &arm.accelerations)];
+    let lists = lists.into_iter().flat_map(|(key, list)| list.iter().flatten().map(move |value| (key, *value, 1e4)));
+    let all = positive.into_iter().chain(gap).chain(lists);
+    all.map(|(key, value, most)| (tables.key(key), value, most)).collect()
 }
 
 fn line(text: &str, key: &str) -> usize {

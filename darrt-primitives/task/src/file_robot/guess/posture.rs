@@ -148,7 +148,7 @@ impl Tried<'_> {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), rng.random_range(-3.1..3.1));
         let down = turn * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::FRAC_PI_2);
         let tool = Isometry3::from_parts(Vector3::new(ahead, side, height).into(), down);
-        self.robot.arm_at(&tool, rng)
+        self.robot.arm_at(0, &tool, rng)
     }
 
     /// How far the joints are from their limits, as a share of half their range.
