@@ -102,6 +102,7 @@ impl TaskRobot for Pr2 {
             payload_kg: PAYLOAD_KG,
             push_force_n: PUSH_FORCE_N,
             motion: motion_limits(),
+            second: None,
         })
     }
 

@@ -182,6 +182,7 @@ fn hand(roll: f64, pitch: f64) -> Robot {
         is_bolted: false,
         drives_along_heading: false,
         motion: MotionLimits::default(),
+        second: None,
     })
     .unwrap()
 }

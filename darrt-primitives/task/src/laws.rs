@@ -191,10 +191,11 @@ fn summary(facts: &RobotFacts) -> String {
         grip_force_n,
         payload_kg,
         push_force_n,
+        second,
     } = facts;
     let named = (arm_joints, finger_joint, tool_link, finger_links, tip_links, start, at_rest, self_pairs);
     let switches = [is_limited_softly, is_bolted, drives_along_heading];
-    format!("{named:?} {switches:?} {:?}", [pad_length_m, grip_force_n, payload_kg, push_force_n])
+    format!("{named:?} {switches:?} {:?} {second:?}", [pad_length_m, grip_force_n, payload_kg, push_force_n])
 }
 
 fn models<M: TaskRobot>(problem: &ProblemFile) -> Result<(), Broken> {

@@ -123,7 +123,7 @@ pub trait TaskRobot: Manipulator + Sized {
     fn posture(&self, name: &str) -> Option<Self::Joints>;
 
     /// The values of the variables of the kinematic tree of [`RobotFacts::description`] (rad or m, in the tree's order), with
-    /// the hand open by `gap_m`.
+    /// the hand at work open by `gap_m`, any other by [`Manipulator::idle_gap_m`].
     fn joint_values(&self, q: &Configuration<Self::Joints>, gap_m: f64) -> Vec<f64>;
 
     /// Does its base move? Primitives that drive are refused for one that does not.
@@ -162,7 +162,7 @@ pub struct RobotFacts {
     pub is_limited_softly: bool,
     /// Where the problem puts the joints at the start, as far as it says.
     pub start: JointValues,
-    /// Where joints stand that it does not speak of, for pictures: the open hand.
+    /// Where joints stand that it does not speak of, for pictures: the open hand, or the hands as those not at work are open.
     pub at_rest: JointValues,
     /// Pairs of links that must be kept apart.
     pub self_pairs: Vec<[String; 2]>,
@@ -180,6 +180,83 @@ pub struct RobotFacts {
     pub push_force_n: f64,
     /// How fast it is driven: what its description does not say, with [`MotionLimits::default`] for what nobody knows.
     pub motion: MotionLimits,
+    /// Its second hand and the arm of that, if it has one; the fields above are about the first.
+    pub second: Option<HandFacts>,
+}
+
+/// What [`RobotFacts`] says of the first hand and its arm, of another one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HandFacts {
+    /// The joints of its arm, from the base outwards; those of a lift, say, may be the first arm's too. The last one moves the hand.
+    pub arm_joints: Vec<String>,
+    /// The joint that opens the hand as it grows.
+    pub finger_joint: String,
+    /// The link whose frame is the tool frame: x out of the hand, y the opening axis.
+    pub tool_link: String,
+    /// The links that may touch what is manipulated; the tips among them.
+    pub finger_links: Vec<String>,
+    /// The links whose inner faces are the pads, that on the side of +y first.
+    pub tip_links: [String; 2],
+    /// Length of a pad from the tip back, metres.
+    pub pad_length_m: f64,
+    /// Force of each finger on what it holds, newton.
+    pub grip_force_n: f64,
+    /// The heaviest object that the arm carries, kilograms.
+    pub payload_kg: f64,
+    /// The largest force with which the hand pushes sideways, newton.
+    pub push_force_n: f64,
+}
+
+impl RobotFacts {
+    /// How many hands it has.
+    pub fn hands(&self) -> usize {
+        1 + usize::from(self.second.is_some())
+    }
+
+    /// The facts as seen from one of its hands, counted from 0: the names and numbers of that hand and its arm in the place of the
+    /// first's, and no second hand. What no hand has is as the first's.
+    #[must_use]
+    pub fn of_hand(&self, hand: usize) -> Self {
+        let mut facts = self.clone();
+        let Some(second) = facts.second.take().filter(|_| hand == 1) else { return facts };
+        let HandFacts {
+            arm_joints,
+            finger_joint,
+            tool_link,
+            finger_links,
+            tip_links,
+            pad_length_m,
+            grip_force_n,
+            payload_kg,
+            push_force_n,
+        } = second;
+        Self {
+            arm_joints,
+            finger_joint,
+            tool_link,
+            finger_links,
+            tip_links,
+            pad_length_m,
+            grip_force_n,
+            payload_kg,
+            push_force_n,
+            ..facts
+        }
+    }
+
+    /// The joints of all its arms, in the order of the joint vector: those of the first arm, then those of the second that the
+    /// first has not.
+    pub fn all_arm_joints(&self) -> Vec<&str> {
+        let others = self.second.iter().flat_map(|second| &second.arm_joints);
+        let others = others.filter(|name| !self.arm_joints.contains(name));
+        self.arm_joints.iter().chain(others).map(String::as_str).collect()
+    }
+
+    /// The joints that open its hands, the first hand's first.
+    pub fn finger_joints(&self) -> impl Iterator<Item = &str> {
+        let others = self.second.iter().map(|second| second.finger_joint.as_str());
+        std::iter::once(self.finger_joint.as_str()).chain(others)
+    }
 }
 
 /// A robot that cannot be built as a problem asks.

@@ -102,6 +102,7 @@ impl TaskRobot for Pr2 {
             payload_kg: facts.payload_kg,
             push_force_n: facts.push_force_n,
             motion: motion(&facts.motion),
+            second: None,
         })
     }
 

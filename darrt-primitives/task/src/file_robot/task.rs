@@ -79,6 +79,7 @@ impl TaskRobot for FileRobot {
             payload_kg: robot.payload_kg,
             push_force_n: robot.push_force_n,
             motion: motion_limits(&loaded, &robot),
+            second: None,
             is_bolted: !file.base.kind.drives(),
             drives_along_heading: file.base.kind == BaseKind::Differential,
             meshes: loaded.meshes,
