@@ -31,6 +31,7 @@ struct StepSketch {
     pushes: Option<String>,
     contacts: Vec<(String, String, u8)>,
     waypoints: Vec<WaypointSketch>,
+    tool: Option<String>,
 }
 
 #[derive(Debug, Clone, Arbitrary)]
@@ -71,6 +72,7 @@ impl StepSketch {
         Step {
             primitive: pick(&PrimitiveName::PAPER, self.primitive),
             object: self.object.clone(),
+            tool: self.tool.clone(),
             holds: self.holds.as_ref().map(|(object, at)| Hold { object: object.clone(), tool_from_object: pose(at) }),
             pushes: self.pushes.clone(),
             allowed_contacts: self.contacts.iter().map(contact).collect(),

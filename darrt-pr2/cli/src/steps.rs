@@ -14,7 +14,8 @@ pub(crate) fn table(story: &Story) -> String {
         let travel = Travel::of(story, step);
         let object = step.object.or(travel.object).and_then(|object| story.problem.objects.get(object));
         let name = object.map_or("", |object| &object.name);
-        table.add_row(row(&number.to_string(), step.primitive.as_str(), name, &travel));
+        let tool = story.tool_of(step).map_or_else(String::new, |tool| format!(", {tool}"));
+        table.add_row(row(&number.to_string(), &format!("{}{tool}", step.primitive), name, &travel));
         total = total.plus(&travel);
     }
     table.add_row(row("", "all", "", &total));

@@ -85,6 +85,7 @@ impl Builder {
         self.steps.push(Step {
             primitive: primitive.clone(),
             object: object.map(str::to_owned),
+            tool: None,
             pushes: (*primitive == PrimitiveName::PUSH).then(|| self.object.clone()),
             allowed_contacts: Vec::new(),
             holds,

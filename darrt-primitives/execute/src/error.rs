@@ -40,6 +40,14 @@ pub enum ExecuteError {
     /// The plan has no clock, and none is accepted by the verifier.
     #[error(transparent)]
     NoClock(#[from] NoClock),
+    /// A step that moves more than the robot's first arm and hand.
+    #[error("step {step} {what}, but plans are executed with the first arm and hand of a robot only")]
+    SecondArm {
+        /// Number of the step, from 1.
+        step: usize,
+        /// What it does.
+        what: String,
+    },
     /// Something that the plan should have and does not.
     #[error("{place}: there is no {what} `{name}`")]
     Missing {

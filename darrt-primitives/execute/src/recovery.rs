@@ -193,9 +193,12 @@ impl Performance<'_> {
         problem.robot.base = feedback.belief.base;
         problem.robot.posture = None;
         let joints = self.told_joints(index)?;
-        let limits = self.of.robot.tree.variables();
-        let joint = |variable: &usize| Some(limits.get(*variable)?.limit.clamp(*joints.get(*variable)?));
-        problem.robot.joints = Some(self.of.robot.arm.iter().map(joint).collect::<Option<_>>()?);
+        let tree = &self.of.robot.tree;
+        let joint = |name: &str| {
+            let variable = tree.variable_index(name)?;
+            Some(tree.variables().get(variable)?.limit.clamp(*joints.get(variable)?))
+        };
+        problem.robot.joints = Some(self.of.facts.all_arm_joints().into_iter().map(joint).collect::<Option<_>>()?);
         for (number, object) in problem.objects.iter_mut().enumerate() {
             let (seen, truth) = (feedback.belief.objects.get(number)?, self.stage.object(number));
             // What has been knocked over is no start.

@@ -74,6 +74,7 @@ impl Timeline {
     /// # Errors
     /// A clock that is none, or a step that names an object or a primitive that is not there.
     pub(crate) fn new(plan: &PlanFile, facts: &RobotFacts, robot: &Robot) -> Result<Self, ExecuteError> {
+        check_first_arm(plan, facts)?;
         // One that the verifier accepts: where corners are rounded too much something is in the way.
         let mut own = None;
         if plan.timing.is_none() {
@@ -123,6 +124,26 @@ impl Timeline {
         let done = if time_s >= step.end_s { 1.0 } else { (moment.waypoint / step.segments).clamp(0.0, 1.0) };
         Command { base: moment.base, joints: moment.joints, finger, done }
     }
+}
+
+/// Only the first arm and hand of a robot can be told what to do here.
+fn check_first_arm(plan: &PlanFile, facts: &RobotFacts) -> Result<(), ExecuteError> {
+    let Some(second) = &facts.second else { return Ok(()) };
+    let others: Vec<_> = second.arm_joints.iter().filter(|name| !facts.arm_joints.contains(name)).collect();
+    for (step, action) in (1..).zip(&plan.steps) {
+        if let Some(tool) = action.tool.as_ref().filter(|tool| **tool != facts.tool_link) {
+            return Err(ExecuteError::SecondArm { step, what: format!("is one of the hand of `{tool}`") });
+        }
+        let moves = |name: &&&String| {
+            let mut values = action.waypoints.iter().map(|waypoint| waypoint.joints.get(name.as_str()));
+            let first = values.next();
+            values.any(|value| Some(value) != first)
+        };
+        if let Some(joint) = others.iter().find(moves) {
+            return Err(ExecuteError::SecondArm { step, what: format!("moves `{joint}`") });
+        }
+    }
+    Ok(())
 }
 
 /// The joint of fingers that have gone on closing from where the plan has them for so long.

@@ -26,8 +26,8 @@ mod track;
 
 use darrt_primitives::contract::Contract;
 
-use crate::plan_file::PlanFile;
 use crate::plan_file::timing::Timing;
+use crate::plan_file::{PlanFile, UnknownTool};
 use crate::robot::RobotFacts;
 
 pub use accepted::{NoClock, give_clock};
@@ -67,6 +67,14 @@ pub enum ClockError {
         what: &'static str,
         /// Its name.
         name: String,
+    },
+    /// A step names a tool that the robot does not have.
+    #[error("step {step}: {error}")]
+    Tool {
+        /// Number of the step, from 1.
+        step: usize,
+        /// What is wrong.
+        error: UnknownTool,
     },
     /// The clock in the file is none for this plan.
     #[error("`{place}` {why}")]

@@ -8,8 +8,9 @@ use darrt_core::plan::{Plan, Step as PlanStep};
 use darrt_core::primitive::PrimitiveId;
 use darrt_primitives::contract::{Contract, HandUse};
 use darrt_primitives::kinematics::KinematicTree;
+use darrt_primitives::manipulator::JointVector as _;
 use darrt_primitives::mode::{Mode, TouchReason};
-use darrt_primitives::primitive::ARM_RIGID_TRANSFER;
+use darrt_primitives::primitive::{ARM_RIGID_TRANSFER, ARM_TRANSIT};
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
 
 use crate::plan_file::{
@@ -25,8 +26,15 @@ const WAYPOINT_SPACING: f64 = 0.05;
 #[derive(Debug)]
 pub struct Exporter {
     joints: JointTable,
-    finger_links: Vec<String>,
+    hands: Vec<HandNames>,
     problem: ProblemFile,
+}
+
+/// The links of a hand that plan files name.
+#[derive(Debug)]
+struct HandNames {
+    tool: String,
+    fingers: Vec<String>,
 }
 
 /// A plan with an instance of a primitive that its domain does not know, so that nobody could judge it.
@@ -49,7 +57,11 @@ impl Exporter {
     pub fn new(problem: &ProblemFile, facts: &RobotFacts) -> Result<Self, RobotError> {
         let tree = KinematicTree::new(&facts.description)?;
         let joints = JointTable::new(&facts.description, &tree);
-        Ok(Self { joints, finger_links: facts.finger_links.clone(), problem: problem.clone() })
+        let names = |hand| {
+            let facts = facts.of_hand(hand);
+            HandNames { tool: facts.tool_link.clone(), fingers: facts.finger_links.clone() }
+        };
+        Ok(Self { joints, hands: (0..facts.hands()).map(names).collect(), problem: problem.clone() })
     }
 
     /// The plan as a file.
@@ -92,6 +104,7 @@ impl Exporter {
 
     fn steps<M: TaskRobot>(&self, m: &Tabletop<M>, plan: &Plan<Tabletop<M>>) -> Result<Written, UnknownPrimitive> {
         let mut before = plan.start().clone();
+        let mut gap_m = before.mode.gap_m();
         let mut steps: Vec<Step> = Vec::with_capacity(plan.steps().len());
         let mut contracts = BTreeMap::new();
         let mut was_steady = false;
@@ -99,31 +112,67 @@ impl Exporter {
             let (primitive, contract) =
                 written_as(m, step).ok_or(UnknownPrimitive { step: number, primitive: step.instance.primitive })?;
             let primitive = PrimitiveName::new(primitive.name());
+            let inside = step.instance.at(m, f64::MIN_POSITIVE, &before);
+            let hand = inside.robot.arm.hand_at_work();
+            if hand != before.robot.arm.hand_at_work() {
+                let idle_gap_m = m.manipulator().idle_gap_m();
+                if gap_m != idle_gap_m {
+                    let transit = m.contract(ARM_TRANSIT).copied();
+                    let transit = transit.ok_or(UnknownPrimitive { step: number, primitive: ARM_TRANSIT })?;
+                    let leaves = self.leaves_hand(m, &before, [gap_m, idle_gap_m]);
+                    contracts.entry(leaves.primitive.clone()).or_insert(transit);
+                    steps.push(leaves);
+                    was_steady = false;
+                }
+                before.robot.arm = before.robot.arm.with_hand_at_work(hand);
+                gap_m = idle_gap_m;
+            }
             contracts.entry(primitive.clone()).or_insert(contract);
-            let (written, end, is_steady) = self.step(m, step, &before, (primitive, contract));
+            let (written, end, is_steady) = self.step(m, step, (&before, gap_m), &inside.mode, (primitive, contract));
             let may_join = was_steady && is_steady && contract.is_free();
             match steps.last_mut().filter(|last| may_join && goes_on(last, &written)) {
                 Some(last) => last.waypoints.extend(written.waypoints.into_iter().skip(1)),
                 None => steps.push(written),
             }
-            (before, was_steady) = (end, is_steady);
+            (gap_m, before, was_steady) = (end.mode.gap_m(), end, is_steady);
         }
         Ok((steps, contracts))
     }
 
-    /// One step, the state it ends in, and whether the hand neither opens nor closes in it.
+    /// The hand that worked so far, free in the state `before`, opens or closes from one gap to the other, metres, before another goes
+    /// to work: nothing else moves.
+    fn leaves_hand<M: TaskRobot>(&self, m: &Tabletop<M>, before: &TabletopState<M>, gaps_m: [f64; 2]) -> Step {
+        Step {
+            primitive: PrimitiveName::new(ARM_TRANSIT.name()),
+            object: None,
+            tool: self.tool(before),
+            holds: None,
+            pushes: None,
+            allowed_contacts: Vec::new(),
+            waypoints: gaps_m.map(|gap_m| self.waypoint(m, before, gap_m)).to_vec(),
+        }
+    }
+
+    /// The tool of the hand at work in a state, as a step names it: not that of the first hand.
+    fn tool<M: TaskRobot>(&self, state: &TabletopState<M>) -> Option<String> {
+        let hand = state.robot.arm.hand_at_work();
+        self.hands.get(hand).filter(|_| hand > 0).map(|hand| hand.tool.clone())
+    }
+
+    /// One step from a state in which the hand is open by so much, `mode` while it lasts; also the state it ends in, and whether the
+    /// hand neither opens nor closes in it.
     fn step<M: TaskRobot>(
         &self,
         m: &Tabletop<M>,
         step: &PlanStep<Tabletop<M>>,
-        before: &TabletopState<M>,
+        (before, open_m): (&TabletopState<M>, f64),
+        mode: &Mode,
         (primitive, contract): (PrimitiveName, Contract),
     ) -> (Step, TabletopState<M>, bool) {
         let instance = &step.instance;
-        let inside = instance.at(m, f64::MIN_POSITIVE, before);
-        let mut waypoints = vec![self.waypoint(m, before, before.mode.gap_m())];
-        let gap_m = inside.mode.gap_m();
-        if gap_m != before.mode.gap_m() {
+        let mut waypoints = vec![self.waypoint(m, before, open_m)];
+        let gap_m = mode.gap_m();
+        if gap_m != open_m {
             waypoints.push(self.waypoint(m, before, gap_m));
         }
         let mut end = before.clone();
@@ -138,12 +187,13 @@ impl Exporter {
         let written = Step {
             primitive,
             object: instance.object.and_then(name),
-            holds: hold(m, &inside.mode),
+            tool: self.tool(before),
+            holds: hold(m, mode),
             pushes: instance.object.and_then(name).filter(|_| contract.slides()),
-            allowed_contacts: self.contacts(m, instance, &inside.mode, contract),
+            allowed_contacts: self.contacts(m, instance, (mode, before.robot.arm.hand_at_work()), contract),
             waypoints,
         };
-        let is_steady = [before.mode.gap_m(), end.mode.gap_m()] == [gap_m; 2];
+        let is_steady = [open_m, end.mode.gap_m()] == [gap_m; 2];
         (written, end, is_steady)
     }
 
@@ -152,21 +202,21 @@ impl Exporter {
         &self,
         m: &Tabletop<M>,
         instance: &Instance<Tabletop<M>>,
-        mode: &Mode,
+        (mode, hand): (&Mode, usize),
         contract: Contract,
     ) -> Vec<AllowedContact> {
         let name = |id| m.movable(id).map(|o| o.body.name.to_string());
         let mut out = Vec::new();
         let fingers = instance.contacts.fingers.or_else(|| Some((mode.held()?.object, TouchReason::Grasp)));
         if let Some((object, reason)) = fingers
-            && let Some(object) = name(object)
+            && let (Some(object), Some(hand)) = (name(object), self.hands.get(hand))
         {
             let reason = match reason {
                 TouchReason::Push => ContactReason::Push,
                 TouchReason::Retreat => ContactReason::Retreat,
                 TouchReason::Grasp => ContactReason::Grasp,
             };
-            out.extend(AllowedContact::fingers(&self.finger_links, &object, reason));
+            out.extend(AllowedContact::fingers(&hand.fingers, &object, reason));
         }
         if contract.lifts()
             && let Some((object, surface)) = instance.contacts.support
@@ -201,8 +251,8 @@ fn written_as<M: TaskRobot>(m: &Tabletop<M>, step: &PlanStep<Tabletop<M>>) -> Op
 
 /// Is the second step more of what the first does? What may go any way is free to turn at any waypoint.
 fn goes_on(step: &Step, next: &Step) -> bool {
-    (&step.primitive, &step.object, &step.holds, &step.allowed_contacts)
-        == (&next.primitive, &next.object, &next.holds, &next.allowed_contacts)
+    (&step.primitive, &step.object, &step.tool, &step.holds, &step.allowed_contacts)
+        == (&next.primitive, &next.object, &next.tool, &next.holds, &next.allowed_contacts)
 }
 
 /// The parameters of the waypoints: all knots up to `until`, and more between them so that none is far from the next.

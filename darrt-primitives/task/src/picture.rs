@@ -44,6 +44,7 @@ pub use story::{Snapshot, Story, StoryStep};
 pub use travel::Travel;
 
 use crate::clock::ClockError;
+use crate::plan_file::UnknownTool;
 use crate::plan_file::joints::JointFlaw;
 use crate::problem_file::ProblemFileError;
 use crate::robot::RobotError;
@@ -70,6 +71,14 @@ pub enum PictureError {
         what: &'static str,
         /// Its name.
         name: String,
+    },
+    /// A step names a tool that the robot does not have.
+    #[error("`{place}`: {error}")]
+    Tool {
+        /// Path of the key in the plan file.
+        place: String,
+        /// What is wrong.
+        error: Box<UnknownTool>,
     },
     /// The joints of a waypoint are not those of the robot.
     #[error("`{place}`: {flaw}")]

@@ -7,6 +7,7 @@
 //! | which joints does a waypoint list? | [`joints`], [`complete`] |
 //! | how was it found? | [`facts`] |
 //! | when is the robot where? | [`timing`] |
+//! | which hand is at work? | [`tool`] |
 //! | what does the published schema say? | [`schema`](crate::schema) |
 //!
 //! `docs/plan-format.md` explains the meaning of every key to readers without this code. SI units, radians, world frame
@@ -21,6 +22,7 @@ mod json;
 mod layout;
 pub mod read;
 pub mod timing;
+pub mod tool;
 mod unique;
 pub mod write;
 
@@ -38,6 +40,7 @@ pub use error::PlanFileError;
 pub use facts::{GradeName, PlannerFacts, SearchName};
 pub use joints::JointTable;
 pub use timing::Timing;
+pub use tool::UnknownTool;
 
 /// The only accepted value of the key `format`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -95,7 +98,8 @@ pub struct Partial {
 ///
 /// Between two waypoints base and joints move linearly, yaw and continuous joints the shorter way; what is held is
 /// rigid to the tool frame; a pushed object moves linearly, or along the arc with which it turns. Either the base moves in a step, or the arm, never both.
-/// The gripper opens or closes only between the first two or the last two waypoints of a step, while all else stands.
+/// The gripper opens or closes only between the first two or the last two waypoints of a step, while all else stands. Of a robot
+/// with several hands only that of [`Step::tool`] opens, closes, holds and touches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Step {
@@ -103,6 +107,9 @@ pub struct Step {
     pub primitive: PrimitiveName,
     /// The object that the step is about, if it is about one.
     pub object: Option<String>,
+    /// The link of the tool frame of the hand at work; missing: that of the robot's first hand, the only one of most robots.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tool: Option<String>,
     /// The object in the hand during the step.
     pub holds: Option<Hold>,
     /// The object that is pushed during the step.

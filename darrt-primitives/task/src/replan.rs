@@ -4,6 +4,7 @@
 //! them, and the whole is judged as any plan. Where the old plan is right again behind what is wrong with it, only the gap is
 //! planned (`splice`); else, where objects stood in the old plan later on is proposed to the new search.
 
+mod hands;
 mod splice;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -284,9 +285,9 @@ impl Old<'_> {
         Some(())
     }
 
-    /// The joints of the arm.
+    /// The joints of all arms.
     fn arm(&self, waypoint: &Waypoint) -> Option<Vec<f64>> {
-        self.facts.arm_joints.iter().map(|name| waypoint.joints.get(name.as_str()).copied()).collect()
+        self.facts.all_arm_joints().into_iter().map(|name| waypoint.joints.get(name).copied()).collect()
     }
 
     /// Where an object at this pose stands, in the words of a problem.
@@ -313,7 +314,7 @@ impl Old<'_> {
 
     /// The first steps with those of `rest` behind them.
     fn joined(&self, kept: usize, rest: &PlanFile) -> PlanFile {
-        let end = self.end(kept).clone();
+        let mut end = self.end(kept).clone();
         let mut steps: Vec<Step> = self.file.steps.iter().take(kept).cloned().collect();
         let mut new = rest.steps.clone();
         // What has not moved yet stands where it stood, bit for bit.
@@ -327,6 +328,10 @@ impl Old<'_> {
             }
         }
         if let Some(first) = new.first_mut() {
+            let hand = first.hand(self.facts).unwrap_or(0);
+            if let Some(wanted) = first.waypoints.first() {
+                steps.extend(hands::readied(self.facts, &mut end, wanted, Some(hand)));
+            }
             let opens = matches!(first.waypoints.as_slice(), [a, b, ..] if differ_in_hand_alone(a, b, self.facts));
             let is_same = first.waypoints.first().is_some_and(|first| is_near(first, &end));
             match first.waypoints.first_mut() {
@@ -338,6 +343,7 @@ impl Old<'_> {
         steps.extend(new);
         let mut contracts = self.file.contracts.clone();
         contracts.extend(rest.contracts.clone());
+        hands::add_contract(&mut contracts, &steps);
         contracts.retain(|name, _| steps.iter().any(|step| step.primitive == *name));
         PlanFile {
             problem: self.file.problem.clone(),
@@ -352,7 +358,7 @@ impl Old<'_> {
 /// Do all but the joints of the hand stand alike?
 fn differ_in_hand_alone(a: &Waypoint, b: &Waypoint, facts: &RobotFacts) -> bool {
     let arm = |waypoint: &Waypoint| -> Vec<Option<f64>> {
-        facts.arm_joints.iter().map(|name| waypoint.joints.get(name.as_str()).copied()).collect()
+        facts.all_arm_joints().into_iter().map(|name| waypoint.joints.get(name).copied()).collect()
     };
     a.base == b.base && a.objects == b.objects && arm(a) == arm(b) && a.joints != b.joints
 }

@@ -1,6 +1,8 @@
 //! A robot and problems for the unit tests of this crate: the PR2 and what it has built in, by way of texts, because the crate
 //! that is tested is not the one that the PR2 knows.
 
+use std::sync::LazyLock;
+
 use darrt_core::budget::Cancel;
 use darrt_core::observe::Silent;
 pub(crate) use darrt_pr2::robot::Pr2;
@@ -11,9 +13,9 @@ use crate::clock::{Bounds, MotionLimits};
 use crate::plan_file::PlanFile;
 use crate::planning::{PlanRequest, PlanResult, plan};
 use crate::problem_file::collection::{BuiltIn, Collection, ProblemGroup};
-use crate::problem_file::{ProblemFile, ProblemFileError, Robot};
+use crate::problem_file::{ArmSide, ProblemFile, ProblemFileError, Robot};
 use crate::registry::Registry;
-use crate::robot::{RobotError, RobotFacts, TaskRobot};
+use crate::robot::{HandFacts, RobotError, RobotFacts, TaskRobot};
 use crate::verify::{Proof, Refusal};
 
 type Joints = <Pr2 as Manipulator>::Joints;
@@ -37,6 +39,41 @@ pub(crate) fn registry() -> Registry<Pr2> {
 
 pub(crate) fn facts(problem: &ProblemFile) -> RobotFacts {
     <Pr2 as TaskRobot>::facts(&problem.robot).unwrap()
+}
+
+/// The PR2 with both hands, the right one the first, whichever arm `problem` plans.
+pub(crate) fn both_hands(problem: &ProblemFile) -> RobotFacts {
+    let of = |arm| facts(&ProblemFile { robot: Robot { arm, ..problem.robot.clone() }, ..problem.clone() });
+    let (right, left) = (of(ArmSide::Right), of(ArmSide::Left));
+    let second = HandFacts {
+        arm_joints: left.arm_joints,
+        finger_joint: left.finger_joint,
+        tool_link: left.tool_link,
+        finger_links: left.finger_links,
+        tip_links: left.tip_links,
+        pad_length_m: left.pad_length_m,
+        grip_force_n: left.grip_force_n,
+        payload_kg: left.payload_kg,
+        push_force_n: left.push_force_n,
+    };
+    let self_pairs = right.self_pairs.iter().chain(&left.self_pairs).cloned().collect();
+    RobotFacts { start: facts(problem).start, self_pairs, second: Some(second), ..right }
+}
+
+/// The link of the tool frame of the left hand.
+pub(crate) const LEFT_TOOL: &str = "l_gripper_tool_frame";
+
+/// A plan of the left arm, written as one of the second hand of [`both_hands`].
+pub(crate) fn left_handed() -> PlanFile {
+    static PLAN: LazyLock<PlanFile> = LazyLock::new(|| {
+        let mut problem = builtin("bowl").unwrap();
+        problem.robot.arm = ArmSide::Left;
+        let mut plan = (0..8).find_map(|seed| planned(&PlanRequest::new(problem.clone(), seed)).plan).unwrap();
+        plan.steps.iter_mut().for_each(|step| step.tool = Some(LEFT_TOOL.to_owned()));
+        plan.timing = None;
+        plan
+    });
+    PLAN.clone()
 }
 
 pub(crate) fn planned(request: &PlanRequest) -> PlanResult {

@@ -38,7 +38,8 @@ pub const WORLD: &str = "world";
 pub struct Sampled {
     timed: TimedPlan,
     samples: Vec<(f64, Moment)>,
-    width: HandWidth,
+    /// By hand.
+    widths: Vec<HandWidth>,
 }
 
 /// The samples of some joints.
@@ -51,7 +52,7 @@ impl Sampled {
     /// [`ClockError`] when plan and robot do not fit together.
     pub fn new(plan: &PlanFile, facts: &RobotFacts, period_s: f64) -> Result<Self, ClockError> {
         let timed = TimedPlan::new(plan, facts)?;
-        let width = HandWidth::new(facts)?;
+        let widths = (0..facts.hands()).map(|hand| HandWidth::new(&facts.of_hand(hand))).collect::<Result<_, _>>()?;
         let end_s = timed.duration_s();
         let mut times = vec![0.0];
         let mut marks = timed.marks_s().into_iter().chain([end_s]).peekable();
@@ -79,7 +80,7 @@ impl Sampled {
             *last = end_s;
         }
         let samples = times.into_iter().map(|t_s| (t_s, timed.at(t_s))).collect();
-        Ok(Self { timed, samples, width })
+        Ok(Self { timed, samples, widths })
     }
 
     /// The plan on its clock.
@@ -97,14 +98,19 @@ impl Sampled {
         self.timed.tree().variables().get(variable).map_or_else(String::new, |v| v.name.to_string())
     }
 
-    /// The arm's joints.
+    /// The joints of the arm, or of all arms.
     pub fn arm(&self) -> JointTrajectory {
         self.of(self.timed.arm())
     }
 
-    /// The joint that opens the hand.
-    pub fn gripper(&self) -> JointTrajectory {
-        self.of(&[self.timed.finger()])
+    /// By hand: the joint that opens it.
+    pub fn grippers(&self) -> Vec<JointTrajectory> {
+        self.timed.fingers().into_iter().map(|finger| self.of(&[finger])).collect()
+    }
+
+    /// The variables that a plan moves: those of the arms, then those that open the hands.
+    pub fn moving(&self) -> Vec<usize> {
+        self.timed.arm().iter().copied().chain(self.timed.fingers()).collect()
     }
 
     /// These variables of the robot's tree.
@@ -131,16 +137,14 @@ impl Sampled {
 
     /// The joints that stand all along, with where they stand.
     pub fn standing(&self) -> Vec<(String, f64)> {
-        let moves = |variable: &usize| self.timed.arm().contains(variable) || *variable == self.timed.finger();
+        let moving = self.moving();
         let Some((_, first)) = self.samples.first() else { return Vec::new() };
-        let standing = (0..first.joints.len()).filter(|variable| !moves(variable));
+        let standing = (0..first.joints.len()).filter(|variable| !moving.contains(variable));
         standing.filter_map(|i| Some((self.name(i), *first.joints.get(i)?))).collect()
     }
 
-    /// The whole robot as one message: arm and fingers as joints, the base as a joint of several degrees of freedom.
+    /// The whole robot as one message: arms and fingers as joints, the base as a joint of several degrees of freedom.
     pub fn robot(&self) -> RobotTrajectory {
-        let mut moving = self.timed.arm().to_vec();
-        moving.push(self.timed.finger());
         let points = self.samples.iter().map(|(t_s, moment)| {
             let [vx, vy, turn] = moment.base_velocity;
             let [ax, ay, spin] = moment.base_acceleration;
@@ -152,7 +156,7 @@ impl Sampled {
             }
         });
         RobotTrajectory {
-            joint_trajectory: self.of(&moving),
+            joint_trajectory: self.of(&self.moving()),
             multi_dof_joint_trajectory: MultiDofJointTrajectory {
                 header: Header::in_frame(WORLD),
                 joint_names: vec![BASE_JOINT.to_owned()],
@@ -166,14 +170,49 @@ impl Sampled {
         self.timed.events()
     }
 
-    /// What the hand is told in an event; `None` if it is told nothing.
+    /// What the hand at work is told in an event; `None` if it is told nothing.
     pub fn command(&self, event: &Event) -> Option<GripperCommand> {
         let EventKind::Fingers { to, force_n, .. } = event.kind else { return None };
         let mut joints = self.timed.at(event.time_s).joints;
-        *joints.get_mut(self.timed.finger())? = to;
-        Some(GripperCommand { position: self.width.gap_m(&joints), max_effort: force_n.unwrap_or(NO_LIMIT) })
+        let hand = self.timed.hand(event.step);
+        *joints.get_mut(*self.timed.fingers().get(hand)?)? = to;
+        Some(GripperCommand {
+            position: self.widths.get(hand)?.gap_m(&joints),
+            max_effort: force_n.unwrap_or(NO_LIMIT),
+        })
     }
 }
 
 /// What a command to a gripper says where its effort is not limited.
 pub const NO_LIMIT: f64 = -1.0;
+
+#[cfg(test)]
+mod tests {
+    use super::document::Document;
+    use super::*;
+    use crate::testing::{LEFT_TOOL, both_hands, facts, left_handed};
+
+    #[test]
+    fn both_arms_are_told_and_the_hand_at_work_by_its_tool() {
+        let plan = left_handed();
+        let sampled = Sampled::new(&plan, &both_hands(&plan.problem), 0.1).unwrap();
+        let document = Document::new(&plan, &sampled);
+        assert_eq!(document.groups["arm"].joint_names.len(), 14);
+        let hands = ["gripper", "second_gripper"].map(|hand| document.groups[hand].joint_names.clone());
+        assert_eq!(hands, [["r_gripper_l_finger_joint"], ["l_gripper_l_finger_joint"]]);
+        assert!(document.standing.keys().all(|name| !name.contains("gripper") && !name.contains("wrist")));
+        assert!(!document.gripper_commands.is_empty());
+        assert!(document.gripper_commands.iter().all(|told| told.tool.as_deref() == Some(LEFT_TOOL)));
+        assert_eq!(sampled.robot().joint_trajectory.joint_names.len(), 16);
+        // As wide as the same plan of the left arm alone.
+        let mut alone = plan.clone();
+        alone.steps.iter_mut().for_each(|step| step.tool = None);
+        let one = Document::new(&alone, &Sampled::new(&alone, &facts(&plan.problem), 0.1).unwrap());
+        let widths = |document: &Document| -> Vec<f64> {
+            document.gripper_commands.iter().map(|told| told.command.position).collect()
+        };
+        assert_eq!(widths(&document), widths(&one));
+        assert_eq!(one.groups.keys().copied().collect::<Vec<_>>(), ["arm", "base", "gripper"]);
+        assert!(!serde_json::to_string(&one).unwrap().contains("\"tool\""));
+    }
+}

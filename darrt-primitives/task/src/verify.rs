@@ -14,6 +14,7 @@
 //! | how far do they keep from each other? | `margins`, `near` |
 //! | what is right and still odd? | `judge::remarks`, `warning` |
 //! | when must a pair be looked at again? | `approach` |
+//! | which hand is at work? | `hands` |
 //! | is an object gripped, pushed as pushes go, or dragged from above? | `hand`, `drag` |
 //! | over which of the surfaces that lie flush is an object? | `flush` |
 //! | does the grip bear the weight, also as the object leans? | `hold`, `surface` |
@@ -31,6 +32,7 @@ mod edge;
 mod flush;
 mod goal;
 mod hand;
+mod hands;
 mod hold;
 mod judge;
 mod margins;

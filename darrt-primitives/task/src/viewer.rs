@@ -25,7 +25,7 @@ use darrt_primitives::kinematics::UrdfError;
 
 use crate::picture::ink;
 use crate::plan_file::joints::JointFlaw;
-use crate::plan_file::{PlanFile, Waypoint};
+use crate::plan_file::{PlanFile, UnknownTool, Waypoint};
 use crate::problem_file::geometry::Geometry;
 use crate::problem_file::{ProblemFile, ProblemFileError};
 use data::ViewerData;
@@ -66,6 +66,14 @@ pub enum ViewerError {
     NoLink {
         /// Its name.
         name: String,
+    },
+    /// A step names a tool that the robot does not have.
+    #[error("`{place}`: {error}")]
+    Tool {
+        /// Path of the key in the plan file.
+        place: String,
+        /// What is wrong.
+        error: Box<UnknownTool>,
     },
     /// A waypoint's joints are not those of the robot.
     #[error("`{place}`: {flaw}")]

@@ -8,7 +8,7 @@ use super::ClockError;
 use super::limits::{Bounds, MotionLimits, carrying_acceleration, coasting_speed, quasi_static_acceleration};
 use super::pace::{self, Channel, Piece};
 use super::rounded_path::RoundedPath;
-use super::track::{BASE, Body, StepTrack, Track};
+use super::track::{BASE, Body, BodyHand, StepTrack, Track};
 use crate::plan_file::PlanFile;
 use crate::plan_file::timing::{Phase, StepTiming, Timing};
 use crate::robot::RobotFacts;
@@ -27,6 +27,8 @@ const SMALLEST_ROUNDING: f64 = 1e-4;
 /// The limits of one step.
 struct Pace<'a> {
     body: &'a Body,
+    /// The hand at work.
+    hand: &'a BodyHand,
     limits: &'a MotionLimits,
     step_track: &'a StepTrack,
     /// By variable.
@@ -51,7 +53,7 @@ pub(super) fn time(
         return Err(ClockError::Limits { name, value });
     }
     let body = Body::new(facts)?;
-    let track = Track::new(plan, &body)?;
+    let track = Track::new(plan, &body, facts)?;
     let joints = joint_bounds(&body, limits);
     let steps = track.steps.iter().enumerate().map(|(index, step_track)| {
         let tube_m = tube_m(index, &step_track.contract);
@@ -103,6 +105,7 @@ impl<'a> Pace<'a> {
         let [speed, acceleration] = hand.map(|bound| bound * HAND_SHARE);
         Self {
             body,
+            hand: body.hand(step_track.hand),
             limits,
             step_track,
             joints,
@@ -151,7 +154,7 @@ impl<'a> Pace<'a> {
 
     /// The step as ranges of waypoints between which either the fingers move or the rest does; none if nothing moves.
     fn runs(&self) -> Vec<(usize, usize, Motion)> {
-        let finger = BASE + self.body.finger;
+        let finger = BASE + self.hand.finger;
         let kinds = self.step_track.points.windows(2).map(|pair| match pair {
             [a, b] if a == b => None,
             [a, b] if a.get(finger) != b.get(finger) => Some(Motion::Fingers),
@@ -349,9 +352,9 @@ impl<'a> Pace<'a> {
         let mut poses = vec![Isometry3::identity(); self.body.tree.link_count()];
         let joints = point.get(BASE..).unwrap_or_default();
         // OPTIMIZATION: only the links between root and tool; the lengths are the tree's own.
-        let written = self.body.tree.forward_only(joints, &self.body.to_tool, &mut poses);
+        let written = self.body.tree.forward_only(joints, &self.hand.to_tool, &mut poses);
         debug_assert!(written.is_ok(), "{written:?}");
-        let tool = world_from_root(point) * poses.get(self.body.tool).copied().unwrap_or_default();
+        let tool = world_from_root(point) * poses.get(self.hand.tool).copied().unwrap_or_default();
         self.held(tool).translation.vector
     }
 
@@ -367,7 +370,7 @@ impl<'a> Pace<'a> {
         // The lengths are the tree's own.
         let written = self.body.tree.forward(joints, &world_from_root(point), &mut poses);
         debug_assert!(written.is_ok(), "{written:?}");
-        let tool = poses.get(self.body.tool).copied().unwrap_or_default();
+        let tool = poses.get(self.hand.tool).copied().unwrap_or_default();
         let hand = self.held(tool);
         poses.iter().chain([&hand]).map(|pose| pose.translation.vector).collect()
     }

@@ -25,7 +25,6 @@ pub struct TimedPlan {
     /// When each step begins, and when the last one ends; seconds.
     step_starts: Vec<f64>,
     timing: Timing,
-    grip_force_n: f64,
 }
 
 /// A phase with the times of its beginning, of its motion and of its end.
@@ -70,7 +69,7 @@ pub struct Moment {
 pub enum EventKind {
     /// A good time to look where everything is: the robot stands, and something is touched next, or the base has just moved.
     Sense,
-    /// The fingers begin to move to where their joint is `to` (rad or m), closing with `force_n` on what they take; no force is
+    /// The fingers of the hand at work in the step begin to move to where their joint is `to` (rad or m), closing with `force_n` on what they take; no force is
     /// given where they meet nothing.
     Fingers {
         /// The finger joint before.
@@ -112,13 +111,14 @@ impl TimedPlan {
     pub fn with(plan: &PlanFile, facts: &RobotFacts, timing: &Timing) -> Result<Self, ClockError> {
         check::check(plan, timing)?;
         let body = Body::new(facts)?;
-        let track = Track::new(plan, &body)?;
+        let track = Track::new(plan, &body, facts)?;
         let (mut phases, mut step_starts, mut now) = (Vec::new(), Vec::new(), 0.0);
         for (step, (step_track, timing)) in track.steps.iter().zip(&timing.steps).enumerate() {
             step_starts.push(now);
             for phase in &timing.phases {
                 let way = RoundedPath::of(phase, &step_track.points);
-                let ends = [0.0, way.length()].map(|s| way.at(s).point.get(BASE + body.finger).copied());
+                let finger = BASE + body.hand(step_track.hand).finger;
+                let ends = [0.0, way.length()].map(|s| way.at(s).point.get(finger).copied());
                 let moves_s = now + phase.wait_s;
                 let stops_s = moves_s + phase.moving_s();
                 let end_s = stops_s + phase.rest_s;
@@ -129,7 +129,7 @@ impl TimedPlan {
             }
         }
         step_starts.push(now);
-        Ok(Self { body, track, phases, step_starts, timing: timing.clone(), grip_force_n: facts.grip_force_n })
+        Ok(Self { body, track, phases, step_starts, timing: timing.clone() })
     }
 
     /// Seconds of the whole plan.
@@ -152,19 +152,24 @@ impl TimedPlan {
         &self.body.table
     }
 
-    /// The variables of the arm, from the base outwards.
+    /// The variables of the arms, from the base outwards: those of the first, then those of others that it has not.
     pub fn arm(&self) -> &[usize] {
         &self.body.arm
     }
 
-    /// The variable that opens the hand.
-    pub fn finger(&self) -> usize {
-        self.body.finger
+    /// By hand: the variable that opens it.
+    pub fn fingers(&self) -> Vec<usize> {
+        self.body.hands().map(|hand| hand.finger).collect()
     }
 
-    /// The link whose frame is the tool frame.
-    pub fn tool(&self) -> usize {
-        self.body.tool
+    /// By hand: the link whose frame is the tool frame.
+    pub fn tools(&self) -> Vec<usize> {
+        self.body.hands().map(|hand| hand.tool).collect()
+    }
+
+    /// Which hand is at work in a step, both counted from 0; the first where there is no such step.
+    pub fn hand(&self, step: usize) -> usize {
+        self.track.steps.get(step).map_or(0, |step_track| step_track.hand)
     }
 
     /// Where the robot is after `t_s` seconds; before the beginning where it starts, after the end where it stops.
@@ -252,7 +257,8 @@ impl TimedPlan {
         if let Some((object, tool_from_object)) = &step_track.holds
             && let Some(pose) = poses.get_mut(object.name.as_str())
         {
-            *pose = self.links(moment).get(self.body.tool).copied().unwrap_or_default() * tool_from_object;
+            let tool = self.body.hand(step_track.hand).tool;
+            *pose = self.links(moment).get(tool).copied().unwrap_or_default() * tool_from_object;
         }
         poses
     }
@@ -299,11 +305,12 @@ impl TimedPlan {
             if has_driven || (touches && !touched) {
                 events.push(Event { time_s: begin_s, step, kind: EventKind::Sense });
             }
+            let hand = self.body.hand(step_track.hand);
             for phase in self.phases.iter().filter(|phase| phase.step == step && phase.opens) {
-                let finger = |s: f64| phase.way.at(s).point.get(BASE + self.body.finger).copied().unwrap_or(0.0);
+                let finger = |s: f64| phase.way.at(s).point.get(BASE + hand.finger).copied().unwrap_or(0.0);
                 let (from, to) = (finger(0.0), finger(phase.way.length()));
                 let takes = step_track.contract.hand == HandUse::Takes;
-                let force_n = takes.then_some(self.grip_force_n);
+                let force_n = takes.then_some(hand.grip_force_n);
                 events.push(Event { time_s: phase.moves_s, step, kind: EventKind::Fingers { from, to, force_n } });
             }
         }

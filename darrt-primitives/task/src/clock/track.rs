@@ -27,13 +27,21 @@ pub(crate) struct Body {
     pub(crate) table: JointTable,
     /// By variable: does it slide?
     pub(crate) slides: Vec<bool>,
-    /// The variable that opens the hand.
-    pub(crate) finger: usize,
-    /// The variables of the arm.
+    /// The variables of all its arms.
     pub(crate) arm: Vec<usize>,
+    pub(crate) first: BodyHand,
+    pub(crate) others: Vec<BodyHand>,
+}
+
+/// What the clock must know of a hand.
+#[derive(Debug)]
+pub(crate) struct BodyHand {
+    /// The variable that opens it.
+    pub(crate) finger: usize,
     pub(crate) tool: usize,
     /// The links between the root and the tool, and the tool, in ascending order.
     pub(crate) to_tool: Vec<usize>,
+    pub(crate) grip_force_n: f64,
 }
 
 impl Body {
@@ -43,27 +51,28 @@ impl Body {
             let missing = || ClockError::Robot(format!("it has no joint `{name}`"));
             tree.variable_index(name).ok_or_else(missing)
         };
-        let tool = || ClockError::Robot(format!("it has no link `{}`", facts.tool_link));
         let is_sliding = |name: &str| {
             let mut joints = facts.description.joints.iter();
             joints.any(|joint| *joint.name == *name && joint.kind == JointKind::Sliding)
         };
-        let tool = tree.link_index(&facts.tool_link).ok_or_else(tool)?;
-        let mut to_tool = vec![tool];
-        // Parents come before their children, so this ends.
-        while let Some(parent) = to_tool.last().and_then(|link| tree.parent(*link)).filter(|parent| *parent > 0) {
-            to_tool.push(parent);
-        }
-        to_tool.reverse();
         Ok(Self {
             table: JointTable::new(&facts.description, &tree),
             slides: tree.variables().iter().map(|variable| is_sliding(&variable.name)).collect(),
-            finger: joint(&facts.finger_joint)?,
-            arm: facts.arm_joints.iter().map(|name| joint(name)).collect::<Result<_, _>>()?,
-            tool,
-            to_tool,
+            arm: facts.all_arm_joints().into_iter().map(joint).collect::<Result<_, _>>()?,
+            first: BodyHand::new(facts, 0, &tree)?,
+            others: (1..facts.hands()).map(|hand| BodyHand::new(facts, hand, &tree)).collect::<Result<_, _>>()?,
             tree,
         })
+    }
+
+    /// The hand with this number, from 0.
+    pub(crate) fn hand(&self, hand: usize) -> &BodyHand {
+        hand.checked_sub(1).and_then(|other| self.others.get(other)).unwrap_or(&self.first)
+    }
+
+    /// All of them, in order.
+    pub(crate) fn hands(&self) -> impl Iterator<Item = &BodyHand> {
+        std::iter::once(&self.first).chain(&self.others)
     }
 
     /// Does this coordinate of a point turn without end?
@@ -90,10 +99,28 @@ impl Body {
     }
 }
 
+impl BodyHand {
+    fn new(facts: &RobotFacts, hand: usize, tree: &KinematicTree) -> Result<Self, ClockError> {
+        let facts = facts.of_hand(hand);
+        let missing = |what: &str, name: &str| ClockError::Robot(format!("it has no {what} `{name}`"));
+        let tool = tree.link_index(&facts.tool_link).ok_or_else(|| missing("link", &facts.tool_link))?;
+        let mut to_tool = vec![tool];
+        // Parents come before their children, so this ends.
+        while let Some(parent) = to_tool.last().and_then(|link| tree.parent(*link)).filter(|parent| *parent > 0) {
+            to_tool.push(parent);
+        }
+        to_tool.reverse();
+        let finger = tree.variable_index(&facts.finger_joint).ok_or_else(|| missing("joint", &facts.finger_joint))?;
+        Ok(Self { finger, tool, to_tool, grip_force_n: facts.grip_force_n })
+    }
+}
+
 /// A step as points.
 #[derive(Debug)]
 pub(crate) struct StepTrack {
     pub(crate) contract: Contract,
+    /// Which hand is at work, from 0.
+    pub(crate) hand: usize,
     /// By waypoint.
     pub(crate) points: Vec<Vec<f64>>,
     /// By waypoint: where the objects are.
@@ -112,7 +139,7 @@ pub(crate) struct Track {
 }
 
 impl Track {
-    pub(crate) fn new(plan: &PlanFile, body: &Body) -> Result<Self, ClockError> {
+    pub(crate) fn new(plan: &PlanFile, body: &Body, facts: &RobotFacts) -> Result<Self, ClockError> {
         let start =
             body.point(&plan.start, None).map_err(|why| ClockError::Waypoint { place: "start".to_owned(), why })?;
         let mut last = start.clone();
@@ -126,6 +153,7 @@ impl Track {
                 let name = step.primitive.to_string();
                 ClockError::Missing { step: index + 1, what: "contract", name }
             })?;
+            let hand = step.hand(facts).map_err(|error| ClockError::Tool { step: index + 1, error })?;
             let mut points = Vec::with_capacity(step.waypoints.len());
             for (at, waypoint) in step.waypoints.iter().enumerate() {
                 last = body.point(waypoint, Some(&last)).map_err(|why| {
@@ -140,7 +168,8 @@ impl Track {
             let holds = step.holds.as_ref().map(|hold| Ok((object(&hold.object)?, hold.tool_from_object.into())));
             let pushes = step.pushes.as_ref().map(object);
             let objects = step.waypoints.iter().map(|waypoint| waypoint.objects.clone()).collect();
-            steps.push(StepTrack { contract, points, objects, holds: holds.transpose()?, pushes: pushes.transpose()? });
+            let (holds, pushes) = (holds.transpose()?, pushes.transpose()?);
+            steps.push(StepTrack { contract, hand, points, objects, holds, pushes });
         }
         Ok(Self { start, steps })
     }

@@ -163,10 +163,10 @@ pub fn why_not<M: TaskRobot>(registry: &Registry<M>, request: &WhyNotRequest) ->
     let file = &request.problem;
     let (robot, arm) = M::build(&file.robot).map_err(PlanningError::from)?;
     let facts = M::facts(&file.robot).map_err(PlanningError::from)?;
-    let slides = |name: &String| {
-        facts.description.joints.iter().any(|joint| *joint.name == **name && joint.kind == JointKind::Sliding)
+    let slides = |name: &str| {
+        facts.description.joints.iter().any(|joint| *joint.name == *name && joint.kind == JointKind::Sliding)
     };
-    let joints: Vec<_> = facts.arm_joints.iter().map(|name| (name.clone(), slides(name))).collect();
+    let joints: Vec<_> = facts.all_arm_joints().into_iter().map(|name| (name.to_owned(), slides(name))).collect();
     let Built { world, start, goal, scene, .. } = world::build_with(registry, file, robot, arm)?;
     let cancel = &Cancel::new();
     let look = Look { m: &world, start: &start, goal: &goal, is_quick: true, cancel };
@@ -198,7 +198,7 @@ pub fn why_not<M: TaskRobot>(registry: &Registry<M>, request: &WhyNotRequest) ->
 struct Asked<'a, M: Manipulator> {
     look: Look<'a, M>,
     scene: &'a Scene,
-    /// The joints of the arm by name; do they slide?
+    /// The joints of the arms by name; do they slide?
     joints: &'a [(String, bool)],
 }
 

@@ -86,13 +86,15 @@ fn evenly(indices: &[usize], count: usize) -> impl Iterator<Item = usize> {
     (0..taken).filter_map(move |i| indices.get(place(i)).copied())
 }
 
-/// Steps of one primitive and object in a row become one.
+/// Steps of one primitive, hand and object in a row become one.
 fn merged(steps: &[StoryStep]) -> (Vec<StoryStep>, Vec<Telling>) {
     let mut merged: Vec<StoryStep> = Vec::new();
     let mut tellings: Vec<Telling> = Vec::new();
     for (index, step) in steps.iter().enumerate() {
         match (merged.last_mut(), tellings.last_mut()) {
-            (Some(same), Some(telling)) if same.primitive == step.primitive && same.object == step.object => {
+            (Some(same), Some(telling))
+                if same.primitive == step.primitive && same.hand == step.hand && same.object == step.object =>
+            {
                 same.snapshots.extend(step.snapshots.iter().cloned());
                 telling.last = index + 1;
             }

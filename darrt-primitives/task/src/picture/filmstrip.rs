@@ -52,7 +52,7 @@ fn view(story: &Story, index: usize, step: &StoryStep, width: f64, height: f64) 
     let figures = [before(story, index), story.end_of(index)].map(|snapshot| Figure::new(story, snapshot));
     let robots = figures.iter().flat_map(|figure| figure.points().map(flat));
     let objects = step.snapshots.iter().filter_map(|snapshot| snapshot.objects.get(step.object.unwrap_or(0)));
-    let hands = step.snapshots.iter().map(|snapshot| story.world_from_tool(snapshot));
+    let hands = step.snapshots.iter().map(|snapshot| story.world_from_tool(snapshot, step.hand));
     let places = objects.copied().chain(hands).map(|pose| flat(&pose.translation.vector.into()));
     let points: Vec<_> = robots.chain(places).collect();
     let shown = Window::around(points).unwrap_or_else(|| Window::centred(&Point2::origin(), LEAST, LEAST));
@@ -87,7 +87,7 @@ fn draw_frame(story: &Story, room: &Room, index: usize, step: &StoryStep, view: 
 
 /// A dotted line along the way of the hand.
 fn draw_hand_way(story: &Story, step: &StoryStep, view: &View, group: &mut Element) {
-    let place = |snapshot| view.see(&story.world_from_tool(snapshot).translation.vector.into());
+    let place = |snapshot| view.see(&story.world_from_tool(snapshot, step.hand).translation.vector.into());
     let mut way: Vec<Point2<f64>> = Vec::new();
     for point in step.snapshots.iter().map(place) {
         if way.last().is_none_or(|last| (point - last).norm() > 1.0) {
@@ -112,7 +112,11 @@ fn draw_caption(story: &Story, index: usize, step: &StoryStep, at: &Point2<f64>,
     };
     let line = at + Vector2::new(2.0 * badge::RADIUS + 7.0, 18.0);
     page.append(ink::bold(ink::text(&line, 11.5, palette::TEXT, Anchor::Start, &heading)));
-    for (row, text) in (0_u8..).zip(ink::wrapped(&travel.in_words(), 10.5, width)) {
+    let words = match story.tool_of(step) {
+        Some(tool) => format!("{tool}: {}", travel.in_words()),
+        None => travel.in_words(),
+    };
+    for (row, text) in (0_u8..).zip(ink::wrapped(&words, 10.5, width)) {
         let line = at + Vector2::new(2.0, 34.0 + 12.0 * f64::from(row));
         page.append(ink::text(&line, 10.5, palette::QUIET, Anchor::Start, &text));
     }

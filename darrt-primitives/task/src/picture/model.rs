@@ -27,14 +27,15 @@ pub struct Model {
     tree: Arc<KinematicTree>,
     bodies: Arc<Vec<Option<Body>>>,
     pub(super) table: JointTable,
-    /// Variables of the arm that manipulates.
+    /// Variables of the arms that manipulate.
     arm: Vec<usize>,
-    tool: usize,
+    /// By hand.
+    tools: Vec<usize>,
     /// Links with a body, in the order of the tree: what stands on the base.
     pub(super) base_links: Vec<usize>,
-    /// All that is neither base nor the arm that manipulates.
+    /// All that is neither base nor an arm that manipulates.
     pub(super) trunk_links: Vec<usize>,
-    /// What only the first joint of the arm moves.
+    /// What only the first joint of an arm moves.
     pub(super) shoulder_links: Vec<usize>,
     pub(super) arm_links: Vec<usize>,
     pub(super) hand_links: Vec<usize>,
@@ -51,9 +52,15 @@ impl Model {
         let tree = KinematicTree::new(&facts.description)?;
         let bodies = link_bodies(&facts.description, &tree, &facts.meshes.paths())?;
         let missing = |what: &str, name: &str| RobotError::Key { key: "robot", why: format!("has no {what} `{name}`") };
-        let variable = |name: &String| tree.variable_index(name).ok_or_else(|| missing("joint", name));
-        let arm = facts.arm_joints.iter().map(variable).collect::<Result<Vec<_>, _>>()?;
-        let tool = tree.link_index(&facts.tool_link).ok_or_else(|| missing("link", &facts.tool_link))?;
+        let variable = |name: &str| tree.variable_index(name).ok_or_else(|| missing("joint", name));
+        let arm = facts.all_arm_joints().into_iter().map(variable).collect::<Result<Vec<_>, _>>()?;
+        let (mut tools, mut firsts, mut lasts) = (Vec::new(), Vec::new(), Vec::new());
+        for hand in 0..facts.hands() {
+            let facts = facts.of_hand(hand);
+            tools.push(tree.link_index(&facts.tool_link).ok_or_else(|| missing("link", &facts.tool_link))?);
+            firsts.extend(facts.arm_joints.first().map(|name| variable(name)).transpose()?);
+            lasts.extend(facts.arm_joints.last().map(|name| variable(name)).transpose()?);
+        }
         let mut start = tree.neutral();
         for (name, value) in facts.at_rest.iter().chain(&facts.start) {
             if let Some(slot) = start.get_mut(variable(name)?) {
@@ -65,10 +72,9 @@ impl Model {
         let moved_by = |wanted: &dyn Fn(&[usize]) -> bool| -> Vec<usize> {
             solid.iter().copied().filter(|link| above.get(*link).is_some_and(|above| wanted(above))).collect()
         };
-        let (first, last) = (arm.first().copied(), arm.last().copied());
         let arm_joints = |above: &[usize]| above.iter().filter(|v| arm.contains(v)).copied().collect::<Vec<_>>();
-        let is_hand = |above: &[usize]| last.is_some_and(|last| above.contains(&last));
-        let is_shoulder = |above: &[usize]| first.is_some_and(|first| arm_joints(above) == [first]) && !is_hand(above);
+        let is_hand = |above: &[usize]| lasts.iter().any(|last| above.contains(last));
+        let is_shoulder = |above: &[usize]| firsts.iter().any(|first| arm_joints(above) == [*first]) && !is_hand(above);
         Ok(Self {
             base_links: moved_by(&|above| above.is_empty()),
             trunk_links: moved_by(&|above| !above.is_empty() && arm_joints(above).is_empty()),
@@ -79,7 +85,7 @@ impl Model {
             tree: Arc::new(tree),
             bodies: Arc::new(bodies),
             arm,
-            tool,
+            tools,
             start,
         })
     }
@@ -103,12 +109,19 @@ impl Model {
         poses
     }
 
-    /// Pose of the tool frame in the world.
-    pub fn world_from_tool(&self, pose: &Pose) -> Isometry3<f64> {
-        self.link_poses(pose).get(self.tool).copied().unwrap_or_else(Isometry3::identity)
+    /// Pose of the tool frame of a hand, counted from 0, in the world.
+    pub fn world_from_tool(&self, pose: &Pose, hand: usize) -> Isometry3<f64> {
+        let tool = self.tools.get(hand).copied().unwrap_or_default();
+        self.link_poses(pose).get(tool).copied().unwrap_or_else(Isometry3::identity)
     }
 
-    /// How far the joints of the arm turn between two poses, summed; a continuous joint goes the short way round.
+    /// The name of the link of that frame, where there is more than one.
+    pub(super) fn tool_name(&self, hand: usize) -> Option<&str> {
+        let tool = self.tools.get(hand).filter(|_| self.tools.len() > 1)?;
+        self.tree.link_names().get(*tool).map(|name| &**name)
+    }
+
+    /// How far the joints of the arms turn between two poses, summed; a continuous joint goes the short way round.
     pub(super) fn arm_turns(&self, from: &Pose, to: &Pose) -> f64 {
         let turn = |variable: &usize| {
             let (a, b) = (from.joints.get(*variable)?, to.joints.get(*variable)?);

@@ -143,7 +143,8 @@ impl Frame {
         if let Some(step) = step {
             let object = step.object.and_then(|object| story.problem.objects.get(object));
             let object = object.map_or_else(String::new, |object| format!(" {}", object.name));
-            let text = format!("{}. {}{object}", self.step + 1, step.primitive);
+            let tool = story.tool_of(step).map_or_else(String::new, |tool| format!(", {tool}"));
+            let text = format!("{}. {}{object}{tool}", self.step + 1, step.primitive);
             let at = Point2::new(GAP, bottom - 10.0);
             group.append(ink::bold(ink::text(&at, 15.0, colour, Anchor::Start, &text)));
         }

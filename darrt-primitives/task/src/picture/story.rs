@@ -34,6 +34,8 @@ pub struct StoryStep {
     pub primitive: PrimitiveName,
     /// What it does.
     pub act: Act,
+    /// Which hand is at work, from 0.
+    pub hand: usize,
     /// Index of the object it acts on, if any.
     pub object: Option<usize>,
     /// The states it runs through, from its first to its last; at least one.
@@ -100,8 +102,12 @@ impl Story {
             let contract = plan.contracts.get(&step.primitive);
             let contract =
                 contract.ok_or_else(|| missing("contracts".to_owned(), "primitive", step.primitive.as_str()))?;
+            let hand = step.hand(robot).map_err(|error| {
+                let place = format!("steps[{index}].tool");
+                PictureError::Tool { place, error: Box::new(error) }
+            })?;
             let (primitive, act) = (step.primitive.clone(), Act::of(contract));
-            story.steps.push(StoryStep { primitive, act, object: object.transpose()?, snapshots });
+            story.steps.push(StoryStep { primitive, act, hand, object: object.transpose()?, snapshots });
         }
         story.note = note(plan);
         Ok(story)
@@ -122,9 +128,14 @@ impl Story {
         std::iter::once(&self.start).chain(self.steps.iter().flat_map(|step| &step.snapshots))
     }
 
-    /// Pose of the hand's tool frame in the world.
-    pub fn world_from_tool(&self, snapshot: &Snapshot) -> Isometry3<f64> {
-        self.model.world_from_tool(&snapshot.robot)
+    /// Pose of the tool frame of a hand, counted from 0, in the world.
+    pub fn world_from_tool(&self, snapshot: &Snapshot, hand: usize) -> Isometry3<f64> {
+        self.model.world_from_tool(&snapshot.robot, hand)
+    }
+
+    /// The link of the tool frame of the hand at work in a step, for a robot with several hands.
+    pub fn tool_of(&self, step: &StoryStep) -> Option<&str> {
+        self.model.tool_name(step.hand)
     }
 }
 

@@ -39,7 +39,7 @@ fn story() -> Story {
         let from = at.clone();
         change(&mut at);
         let object = (from.objects != at.objects).then_some(0);
-        steps.push(StoryStep { primitive, act, object, snapshots: between(&from, &at, 15) });
+        steps.push(StoryStep { primitive, act, hand: 0, object, snapshots: between(&from, &at, 15) });
     };
     step(PrimitiveName::ARM_TRANSIT, Act::Transit, &|s| arm(s, ABOVE));
     step(PrimitiveName::STRAIGHT_LINE_ARM_TRANSIT, Act::Transit, &|s| arm(s, CONTACT));
@@ -149,4 +149,23 @@ fn long_plans_are_drawn_in_part_and_say_so() {
     let joined = draw(&long_story(3), Extent::Whole);
     assert!(joined.contains("drawn as one.") && !joined.contains("are not drawn"));
     assert!(!draw(&story(), Extent::Whole).contains("drawn as one"));
+}
+
+#[test]
+fn the_picture_shows_the_way_of_the_hand_at_work_and_names_it() {
+    use crate::testing::{LEFT_TOOL, both_hands, left_handed};
+    let plan = left_handed();
+    let story = Story::of_plan(&plan, &both_hands(&plan.problem)).unwrap();
+    let mut alone = plan.clone();
+    alone.steps.iter_mut().for_each(|step| step.tool = None);
+    let one = Story::of_plan(&alone, &facts(&plan.problem)).unwrap();
+    for (step, same) in story.steps.iter().zip(&one.steps) {
+        assert_eq!((story.tool_of(step), one.tool_of(same)), (Some(LEFT_TOOL), None));
+        let [of_both, of_one] = [Travel::of(&story, step), Travel::of(&one, same)];
+        assert!((of_both.hand_m - of_one.hand_m).abs() < 1e-12);
+    }
+    let mut lie = plan;
+    lie.steps[0].tool = Some("hook".to_owned());
+    let error = Story::of_plan(&lie, &both_hands(&lie.problem)).unwrap_err().to_string();
+    assert!(error.contains("`steps[0].tool`") && error.contains(LEFT_TOOL), "{error}");
 }

@@ -12,11 +12,11 @@ pub struct Travel {
     pub base_m: f64,
     /// Turns of the base.
     pub base_turn: f64,
-    /// Way of the hand as seen from the base: what the arm does.
+    /// Way of the hand at work as seen from the base: what the arm does.
     pub hand_m: f64,
     /// Turns of the hand as seen from the base.
     pub hand_turn: f64,
-    /// Turns of all joints of the planned arm together.
+    /// Turns of all joints of the planned arms together.
     pub arm_turn: f64,
     /// Way of the object that moves farthest, in the world.
     pub object_m: f64,
@@ -39,7 +39,7 @@ impl Travel {
             travel.base_m += (u - x).hypot(v - y);
             travel.base_turn += turned(w - yaw);
             travel.arm_turn += story.model.arm_turns(&before.robot, &after.robot);
-            let hand = [before, after].map(|snapshot| base_from_tool(story, snapshot));
+            let hand = [before, after].map(|snapshot| base_from_tool(story, snapshot, step.hand));
             add(&mut travel.hand_m, &mut travel.hand_turn, &hand);
         }
         for object in 0..story.start.objects.len() {
@@ -108,8 +108,8 @@ fn add(way: &mut f64, turn: &mut f64, [before, after]: &[Isometry3<f64>; 2]) {
     *turn += before.rotation.angle_to(&after.rotation);
 }
 
-fn base_from_tool(story: &Story, snapshot: &Snapshot) -> Isometry3<f64> {
-    world_from_base(&snapshot.robot.base).inverse() * story.world_from_tool(snapshot)
+fn base_from_tool(story: &Story, snapshot: &Snapshot, hand: usize) -> Isometry3<f64> {
+    world_from_base(&snapshot.robot.base).inverse() * story.world_from_tool(snapshot, hand)
 }
 
 /// The size of a turn, the short way round.
@@ -136,8 +136,8 @@ mod tests {
         third.robot.base[1] -= 0.4;
         third.objects[0].translation.x += 0.5;
         let snapshots = vec![story.start.clone(), second, third];
-        let step =
-            StoryStep { primitive: PrimitiveName::BASE_RIGID_TRANSFER, act: Act::Transfer, object: Some(0), snapshots };
+        let (primitive, act) = (PrimitiveName::BASE_RIGID_TRANSFER, Act::Transfer);
+        let step = StoryStep { primitive, act, hand: 0, object: Some(0), snapshots };
         let travel = Travel::of(&story, &step);
         assert!((travel.base_m - 0.7).abs() < 1e-12);
         assert!((travel.base_turn - (std::f64::consts::TAU - 6.0)).abs() < 1e-12);

@@ -36,7 +36,7 @@ pub(super) fn verified<M: TaskRobot>(
         match verify_with(&file, &prepared.facts, &VerifyOptions::default()) {
             Ok(proof) => return Some((file, proof)),
             Err(refusal) => {
-                // Steps of the file are those of the plan, some of them joined.
+                // Steps of the file are those of the plan, some of them joined, and those between them in which a hand leaves.
                 let good = refusal.step.map_or(0, |step| step.saturating_sub(1) as usize);
                 let kept = kept(prepared, &plan, good);
                 plan = Plan::new(plan.start().clone(), plan.steps().iter().take(kept).cloned().collect());

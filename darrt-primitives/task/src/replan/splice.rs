@@ -5,7 +5,7 @@
 use darrt_core::observe::Observer;
 use nalgebra::Isometry3;
 
-use super::{Old, ReplanRequest, Standing, near};
+use super::{Old, ReplanRequest, Standing, hands, near};
 use crate::plan_file::{PlanFile, Pose, Step, Waypoint};
 use crate::planning::variants::StrategyChange;
 use crate::planning::{PlanRequest, PlanResult, plan_without_clock};
@@ -135,6 +135,9 @@ impl Old<'_> {
         if !is_robot_there || !are_objects_there(&end, there, &is_round) {
             return None;
         }
+        if self.facts.hands() > 1 {
+            begun.steps.extend(hands::readied(self.facts, &mut end, there, None));
+        }
         if end.joints != there.joints {
             end.joints.clone_from(&there.joints);
             begun.steps.last_mut()?.waypoints.push(end.clone());
@@ -165,6 +168,7 @@ impl Old<'_> {
         *tail.first_mut()?.waypoints.first_mut()? = end;
         begun.steps.extend(tail);
         begun.contracts.extend(self.file.contracts.iter().map(|(name, contract)| (name.clone(), *contract)));
+        hands::add_contract(&mut begun.contracts, &begun.steps);
         begun.contracts.retain(|name, _| begun.steps.iter().any(|step| step.primitive == *name));
         Some(begun)
     }

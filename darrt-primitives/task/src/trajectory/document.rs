@@ -27,7 +27,8 @@ pub struct Document {
     pub duration_s: f64,
     /// The steps with their times.
     pub steps: Vec<StepTime>,
-    /// Trajectories by the group of joints that a controller moves: `arm`, `base`, `gripper`.
+    /// Trajectories by the group of joints that a controller moves: `arm`, `base`, `gripper`, and `second_gripper` of a robot with
+    /// two hands, whose `arm` is both arms.
     pub groups: BTreeMap<&'static str, JointTrajectory>,
     /// Where the other joints stand all along: torso, head, a second arm.
     pub standing: BTreeMap<String, f64>,
@@ -59,6 +60,9 @@ pub struct TimedCommand {
     pub time_from_start: Seconds,
     /// The step, from 1.
     pub step: usize,
+    /// The link of the tool frame of the hand that is told; missing: the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tool: Option<String>,
     /// What it is told.
     pub command: GripperCommand,
 }
@@ -86,8 +90,10 @@ impl Document {
         let events = sampled.events();
         let commands = events.iter().filter_map(|event| {
             let command = sampled.command(event)?;
-            Some(TimedCommand { time_from_start: Seconds::from_s(event.time_s), step: event.step + 1, command })
+            let tool = plan.steps.get(event.step).and_then(|step| step.tool.clone());
+            Some(TimedCommand { time_from_start: Seconds::from_s(event.time_s), step: event.step + 1, tool, command })
         });
+        let grippers = ["gripper", "second_gripper"].into_iter().zip(sampled.grippers());
         let sensing = events.iter().filter(|event| event.kind == EventKind::Sense);
         Self {
             format: FORMAT,
@@ -95,7 +101,7 @@ impl Document {
             problem: plan.problem.name.clone(),
             duration_s: sampled.timed().duration_s(),
             steps: steps.collect(),
-            groups: [("arm", sampled.arm()), ("base", sampled.base()), ("gripper", sampled.gripper())].into(),
+            groups: [("arm", sampled.arm()), ("base", sampled.base())].into_iter().chain(grippers).collect(),
             standing: sampled.standing().into_iter().collect(),
             gripper_commands: commands.collect(),
             sensing: sensing

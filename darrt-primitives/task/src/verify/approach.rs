@@ -6,8 +6,9 @@
 
 use darrt_primitives::kinematics::tree::LinkMotion;
 
+use super::hands::Hands;
 use super::motion::Segment;
-use super::robot::{Robot, Role};
+use super::robot::Role;
 
 /// What moves a solid: one bit for each moving joint above it, one for the base, one for a push.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -62,7 +63,9 @@ impl Speeds {
 
 impl Approach {
     /// `None` if more joints move than a robot has; then nothing is known.
-    pub(super) fn new(robot: &Robot) -> Option<Self> {
+    pub(super) fn new(hands: &Hands) -> Option<Self> {
+        let robot = &hands.first;
+        let moves = |variable: usize| hands.all().any(|robot| robot.roles.get(variable) != Some(&Role::Parked));
         let count = robot.tree.link_count();
         let mut joints = Vec::new();
         let mut movers = vec![Movers::BASE; count];
@@ -75,7 +78,7 @@ impl Approach {
                 Some(LinkMotion::Sliding { drive, .. }) => (Some(drive), false),
                 _ => (None, false),
             };
-            if let Some(drive) = drive.filter(|drive| robot.roles.get(drive.variable) != Some(&Role::Parked)) {
+            if let Some(drive) = drive.filter(|drive| moves(drive.variable)) {
                 if joints.len() == Movers::MOST_JOINTS {
                     return None;
                 }
@@ -94,7 +97,7 @@ impl Approach {
         self.movers.get(link).copied().unwrap_or(Movers::NONE)
     }
 
-    /// Bounds for one segment. `extents`: see [`Robot::extents`].
+    /// Bounds for one segment. `extents`: see [`extents`](super::robot::Robot::extents).
     /// Of a pushed object also how far it reaches from its centre, metres.
     pub(super) fn speeds(&self, segment: &Segment<'_>, extents: &[f64], pushed: Option<(usize, f64)>) -> Speeds {
         let way = |(object, reach_m): (usize, f64)| {
@@ -133,11 +136,12 @@ mod tests {
     #[test]
     fn no_two_solids_come_nearer_than_the_speeds_say() {
         let file = bowl();
-        let robot = Robot::new(&facts(&file.problem)).unwrap();
+        let hands = Hands::new(&facts(&file.problem)).unwrap();
+        let robot = &hands.first;
         let world = World::new(&file.problem).unwrap();
-        let approach = Approach::new(&robot).unwrap();
+        let approach = Approach::new(&hands).unwrap();
         let extents = robot.extents(0.0);
-        let start = State::read(&file.start, &robot, &world).unwrap();
+        let start = State::read(&file.start, robot, &world).unwrap();
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(4);
         let mut draw = |from: &State, size: f64| {
             let mut state = from.clone();
@@ -158,7 +162,7 @@ mod tests {
             if round % 2 == 0 {
                 to.base = from.base;
             }
-            let speeds = approach.speeds(&Segment::new(&from, &to, &robot), &extents, None);
+            let speeds = approach.speeds(&Segment::new(&from, &to, robot), &extents, None);
             robot.link_poses(&from.joints, &mut poses.0);
             robot.link_poses(&to.joints, &mut poses.1);
             for (i, a) in robot.solids.iter().enumerate() {
@@ -180,8 +184,8 @@ mod tests {
 
     #[test]
     fn only_what_lies_between_counts() {
-        let robot = Robot::new(&facts(&builtin("bowl").unwrap())).unwrap();
-        let approach = Approach::new(&robot).unwrap();
+        let hands = Hands::new(&facts(&builtin("bowl").unwrap())).unwrap();
+        let (robot, approach) = (&hands.first, Approach::new(&hands).unwrap());
         let of = |name: &str| approach.of_link(robot.tree.link_index(name).unwrap());
         let count = |a: &str, b: &str| of(a).between(of(b)).0.count_ones();
         assert_eq!(count("base_link", "torso_lift_link"), 0);

@@ -15,6 +15,7 @@ mod work;
 
 use darrt_core::budget::Cancel;
 
+use super::hands::Hands;
 use super::judge::Judge;
 use super::options::VerifyOptions;
 use super::refusal::{Refusal, RefusalKind, Site};
@@ -38,6 +39,8 @@ const LOOKS: u32 = 4;
 struct Timed<'a> {
     site: Site<'a>,
     step: &'a Step,
+    /// With the hand of the step at work.
+    robot: &'a Robot,
     phases: &'a [Phase],
     /// By waypoint: x, y, yaw, then the variables of the tree.
     points: Vec<Vec<f64>>,
@@ -90,8 +93,8 @@ pub(super) fn check(
         let text = format!("the robot's motion limit `{name}` is {value}, which is out of its range");
         return Err(Refusal::whole(RefusalKind::Problem, text));
     }
-    let robot = Robot::new(facts)?;
-    let bounds = joint_bounds(&robot, facts);
+    let hands = Hands::new(facts)?;
+    let bounds = joint_bounds(&hands.first, facts);
     let mut steps = Vec::with_capacity(plan.steps.len());
     for ((number, step), clock) in (1..).zip(&plan.steps).zip(&timing.steps) {
         let contract = plan.contracts.get(&step.primitive).copied().ok_or_else(|| {
@@ -99,16 +102,17 @@ pub(super) fn check(
             Refusal::whole(RefusalKind::Primitive, text)
         })?;
         let site = Site { step: number, primitive: &step.primitive, contract };
-        let points = points(step, &robot).map_err(|flaw| site.refusal(0.0, RefusalKind::Malformed, flaw))?;
-        let timed = Timed { site, step, phases: &clock.phases, points, duration_s: clock.duration_s() };
-        check_limits(&timed, &robot, limits, &bounds)?;
-        work::check(&timed, plan, &robot, limits)?;
+        let robot = &**hands.of_step(site, step, facts)?;
+        let points = points(step, robot).map_err(|flaw| site.refusal(0.0, RefusalKind::Malformed, flaw))?;
+        let timed = Timed { site, step, robot, phases: &clock.phases, points, duration_s: clock.duration_s() };
+        check_limits(&timed, limits, &bounds)?;
+        work::check(&timed, plan, limits)?;
         steps.push(timed);
     }
     if !steps.iter().any(Timed::leaves_waypoints) {
         return Ok(());
     }
-    let rounded = rounded::rounded(plan, &steps, &robot)?;
+    let rounded = rounded::rounded(plan, &steps)?;
     // OPTIMIZATION: steps that stay as they are have been judged.
     let same = steps.iter().filter(|timed| !timed.leaves_waypoints()).map(|timed| timed.site.step);
     let judged = Judge::new(&rounded, facts, options, cancel)?.knowing(same).run();
@@ -140,7 +144,7 @@ fn joint_bounds(robot: &Robot, facts: &RobotFacts) -> Vec<Bounds> {
 }
 
 /// Joints and base keep their limits all along.
-fn check_limits(timed: &Timed<'_>, robot: &Robot, limits: &MotionLimits, joints: &[Bounds]) -> Result<(), Refusal> {
+fn check_limits(timed: &Timed<'_>, limits: &MotionLimits, joints: &[Bounds]) -> Result<(), Refusal> {
     let share = if timed.site.contract.begins_holding() { limits.loaded_base_share } else { 1.0 };
     let [drive, turn] = [limits.drive, limits.turn].map(|bounds| bounds.scaled(share));
     let mut begin_s = 0.0;
@@ -149,7 +153,7 @@ fn check_limits(timed: &Timed<'_>, robot: &Robot, limits: &MotionLimits, joints:
         let arm = curve.moving().iter().filter_map(|coordinate| Some((*coordinate, coordinate.checked_sub(3)?)));
         let arm: Vec<_> = arm
             .filter_map(|(coordinate, joint)| {
-                Some((coordinate, format!("`{}`", robot.joint_name(joint)), joints.get(joint)?))
+                Some((coordinate, format!("`{}`", timed.robot.joint_name(joint)), joints.get(joint)?))
             })
             .collect();
         for (knot, t_s, jump) in curve.jumps(phase) {

@@ -3,6 +3,7 @@
 use darrt_primitives::kinematics::limit::wrap_to_pi;
 use nalgebra::{Isometry3, Vector2, Vector3};
 
+use super::hands::Hands;
 use super::mode::Mode;
 use super::motion::State;
 use super::refusal::{Refusal, RefusalKind};
@@ -17,7 +18,7 @@ pub(super) fn check(
     problem: &ProblemFile,
     partial: Option<&Partial>,
     world: &World<'_>,
-    (robot, facts): (&Robot, &RobotFacts),
+    (hands, facts): (&Hands, &RobotFacts),
     end: &State,
     modes: &[Mode],
 ) -> Result<(), Refusal> {
@@ -25,7 +26,7 @@ pub(super) fn check(
         check_parts(problem, partial)?;
     }
     let robot_goal = problem.goal.robot.as_ref().filter(|_| partial.is_none_or(|partial| !partial.robot_remains));
-    if let Some(flaw) = robot_goal.and_then(|goal| robot_flaw(goal, robot, facts, end)) {
+    if let Some(flaw) = robot_goal.and_then(|goal| robot_flaw(goal, hands, facts, end)) {
         return Err(Refusal::whole(RefusalKind::Goal, format!("the goal does not hold: {flaw}")));
     }
     let remains = |name: &str| partial.is_some_and(|partial| partial.remains.iter().any(|other| other == name));
@@ -81,8 +82,8 @@ fn check_parts(problem: &ProblemFile, partial: &Partial) -> Result<(), Refusal> 
     Ok(())
 }
 
-/// What the goal of the robot lacks.
-fn robot_flaw(goal: &RobotGoal, robot: &Robot, facts: &RobotFacts, end: &State) -> Option<String> {
+/// What the goal of the robot lacks. Any of its hands may have the tool where it is wanted.
+fn robot_flaw(goal: &RobotGoal, hands: &Hands, facts: &RobotFacts, end: &State) -> Option<String> {
     let (most_m, most_rad) = (goal.tolerance_m, goal.tolerance_rad);
     let is_off = |metres: f64, radians: f64| metres > most_m || radians > most_rad;
     if let Some([x, y, yaw]) = goal.base {
@@ -91,7 +92,8 @@ fn robot_flaw(goal: &RobotGoal, robot: &Robot, facts: &RobotFacts, end: &State) 
             return Some(format!("the base is {metres:.4} m and {radians:.4} rad from its goal"));
         }
     }
-    for (name, wanted) in facts.arm_joints.iter().zip(goal.joints.iter().flatten()) {
+    let robot = &hands.first;
+    for (name, wanted) in facts.all_arm_joints().into_iter().zip(goal.joints.iter().flatten()) {
         let Some(variable) = robot.tree.variable_index(name) else {
             return Some(format!("the robot has no joint `{name}`"));
         };
@@ -104,9 +106,15 @@ fn robot_flaw(goal: &RobotGoal, robot: &Robot, facts: &RobotFacts, end: &State) 
     let wanted = goal.tool?.world_from_tool();
     let mut links = Vec::new();
     robot.link_poses(&end.joints, &mut links);
-    let tool = world_from_robot(&end.base) * links.get(robot.tool)?;
-    let metres = (tool.translation.vector - wanted.translation.vector).norm();
-    let radians = tool.rotation.angle_to(&wanted.rotation);
+    let off = |robot: &Robot| {
+        let tool = world_from_robot(&end.base) * links.get(robot.tool)?;
+        let metres = (tool.translation.vector - wanted.translation.vector).norm();
+        Some((metres, tool.rotation.angle_to(&wanted.rotation)))
+    };
+    let (metres, radians) = hands.all().filter_map(off).min_by(|a, b| {
+        let is_off = |(metres, radians): &(f64, f64)| is_off(*metres, *radians);
+        is_off(a).cmp(&is_off(b)).then(a.0.total_cmp(&b.0))
+    })?;
     is_off(metres, radians).then(|| format!("the tool is {metres:.4} m and {radians:.4} rad from its goal"))
 }
 

@@ -7,6 +7,7 @@ mod moment;
 mod remarks;
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use darrt_core::budget::Cancel;
 use darrt_primitives::contract::{HandUse, HandWay, ObjectRule};
@@ -17,6 +18,7 @@ use super::drag;
 use super::edge;
 use super::goal;
 use super::hand::{PushCore, SlideDirection, check_grip};
+use super::hands::Hands;
 use super::hold::{Hold, check_hold};
 use super::margins::{MarginKind, Margins};
 use super::mode::{Act, Mode, Permits};
@@ -40,7 +42,9 @@ pub(super) struct Judge<'a> {
     options: &'a VerifyOptions,
     cancel: &'a Cancel,
     facts: &'a RobotFacts,
-    robot: Robot,
+    hands: Hands,
+    /// With the hand at work in the present step.
+    robot: Arc<Robot>,
     world: World<'a>,
     stage: Stage,
     margins: Margins,
@@ -112,12 +116,13 @@ impl<'a> Judge<'a> {
     ) -> Result<Self, Refusal> {
         let name = format!("problem `{}` in the plan", plan.problem.name);
         plan.problem.validate(&name).map_err(|e| Refusal::whole(RefusalKind::Problem, e.to_string()))?;
-        let robot = Robot::new(facts)?;
+        let hands = Hands::new(facts)?;
+        let robot = Arc::clone(&hands.first);
         let world = World::new(&plan.problem)?;
         let margins = Margins::of(&plan.problem);
-        let region = if options.is_plain { Region::everywhere() } else { Region::of(plan, &robot, &world) };
+        let region = if options.is_plain { Region::everywhere() } else { Region::of(plan, &hands, &world) };
         let stage = Stage::new(&robot, &world, options.support_m, margins, &region);
-        let approach = Approach::new(&robot)
+        let approach = Approach::new(&hands)
             .ok_or_else(|| Refusal::whole(RefusalKind::Problem, "more joints move than any robot of this kind has"))?;
         let modes = world.movables.iter().map(|m| Mode::Resting { surface: m.start_surface }).collect();
         Ok(Self {
@@ -125,6 +130,7 @@ impl<'a> Judge<'a> {
             options,
             cancel,
             facts,
+            hands,
             robot,
             world,
             stage,
@@ -169,7 +175,7 @@ impl<'a> Judge<'a> {
             &self.plan.problem,
             self.plan.partial.as_ref(),
             &self.world,
-            (&self.robot, self.facts),
+            (&self.hands, self.facts),
             &here,
             &self.modes,
         )?;
@@ -247,7 +253,8 @@ impl<'a> Judge<'a> {
             let text = format!("does not start where the step before ended: {}", chain::difference(last, first));
             return Err(site.refusal(0.0, RefusalKind::Chain, text));
         }
-        let act = Act::new(site, step, &self.world, &self.modes)?;
+        self.robot = Arc::clone(self.hands.of_step(site, step, self.facts)?);
+        let act = Act::new(site, step, (&self.hands, &self.robot), &self.world, &self.modes)?;
         let permits = Permits::new(site, step, &act, &self.robot, &self.world, &self.modes)?;
         let (world, modes) = (&self.world, &self.modes);
         let (tool, approach) = (self.approach.of_link(self.robot.tool), &self.approach);
@@ -442,7 +449,7 @@ impl<'a> Judge<'a> {
                 self.check_edge(trial.site, holding.object, surface, pose)?;
                 Mode::Resting { surface }
             }
-            (_, Some(hold)) => Mode::Held { tool_from_object: hold.tool_from_object },
+            (_, Some(hold)) => Mode::Held { hand: self.robot.which, tool_from_object: hold.tool_from_object },
             (_, None) => return Ok(()),
         };
         if let Some(slot) = self.modes.get_mut(holding.object) {

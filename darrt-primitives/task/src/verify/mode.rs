@@ -3,6 +3,7 @@
 use darrt_primitives::contract::{Contract, HandUse};
 use nalgebra::Isometry3;
 
+use super::hands::Hands;
 use super::margins::MarginKind;
 use super::motion::sound;
 use super::refusal::{Refusal, RefusalKind, Site};
@@ -16,8 +17,8 @@ use crate::plan_file::{AllowedContact, ContactReason, Pose, Step};
 pub(super) enum Mode {
     /// It stands on the surface with this index.
     Resting { surface: usize },
-    /// It is in the hand.
-    Held { tool_from_object: Pose },
+    /// It is in one of the hands, counted from 0.
+    Held { hand: usize, tool_from_object: Pose },
 }
 
 /// An object in the hand during a step.
@@ -36,16 +37,32 @@ pub(super) struct Act {
 }
 
 impl Act {
-    /// Checks what the step claims against how the objects are supported before it.
-    pub(super) fn new(site: Site<'_>, step: &Step, world: &World<'_>, modes: &[Mode]) -> Result<Self, Refusal> {
+    /// Checks what the step of the hand of `robot` claims against how the objects are supported before it.
+    pub(super) fn new(
+        site: Site<'_>,
+        step: &Step,
+        (hands, robot): (&Hands, &Robot),
+        world: &World<'_>,
+        modes: &[Mode],
+    ) -> Result<Self, Refusal> {
         let refuse = |message: String| site.refusal(0.0, RefusalKind::Mode, message);
         let index = |name: &str| world.object(name).ok_or_else(|| refuse(format!("there is no object `{name}`")));
         let object = step.object.as_deref().map(index).transpose()?;
         let pushed = step.pushes.as_deref().map(index).transpose()?;
-        let in_hand = (0..).zip(modes).find_map(|(i, mode)| match mode {
-            Mode::Held { tool_from_object } => Some((i, *tool_from_object)),
+        let held_by = (0..).zip(modes).find_map(|(i, mode)| match mode {
+            Mode::Held { hand, tool_from_object } => Some((i, *hand, *tool_from_object)),
             Mode::Resting { .. } => None,
         });
+        if let Some((i, hand, _)) = held_by
+            && hand != robot.which
+        {
+            let (name, holder, tool) = (world.object_name(i), hands.get(hand).tool_name(), robot.tool_name());
+            return Err(refuse(format!(
+                "the hand of `{holder}` holds `{name}`, but the step is one of the hand of `{tool}`: while something is held, no \
+                 other hand is at work"
+            )));
+        }
+        let in_hand = held_by.map(|(i, _, tool_from_object)| (i, tool_from_object));
         let holds = match &step.holds {
             Some(hold) => Some((index(&hold.object)?, hold.tool_from_object)),
             None => None,

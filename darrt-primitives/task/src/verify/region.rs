@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Point2, Vector2};
 
-use super::robot::Robot;
+use super::hands::Hands;
 use super::solid::Solid;
 use super::world::World;
 use crate::plan_file::{PlanFile, Waypoint};
@@ -26,12 +26,13 @@ impl Region {
 
     /// Where the base and the objects of a plan are at its waypoints. Between two of them the base goes straight, and a pushed object
     /// on a line or an arc, which leaves the line by less than its length; what is held is as near to the base as the hand is.
-    pub(super) fn of(plan: &PlanFile, robot: &Robot, world: &World<'_>) -> Self {
+    pub(super) fn of(plan: &PlanFile, hands: &Hands, world: &World<'_>) -> Self {
         let objects_m = world.movables.iter().map(|movable| movable.solid.reach()).fold(0.0, f64::max);
         let holds = plan.steps.iter().filter_map(|step| step.holds.as_ref());
         let offsets = holds.map(|hold| Isometry3::from(hold.tool_from_object).translation.vector.norm());
         let held_m = objects_m + offsets.fold(0.0, f64::max);
-        let robot_m = robot.extents(held_m).first().copied().unwrap_or(f64::INFINITY);
+        let robots_m = hands.all().map(|robot| robot.extents(held_m).first().copied().unwrap_or(f64::INFINITY));
+        let robot_m = robots_m.fold(0.0, f64::max);
         let waypoints = || std::iter::once(&plan.start).chain(plan.steps.iter().flat_map(|step| &step.waypoints));
         let objects = |waypoint: &Waypoint| -> Vec<Point2<f64>> {
             waypoint.objects.values().map(|pose| Point2::new(pose.position[0], pose.position[1])).collect()
@@ -97,8 +98,8 @@ mod tests {
         crowded.problem.obstacles.extend(far);
         assert_eq!(verify(&crowded, &facts).unwrap(), usual);
         // Wherever the bowl or the base comes, nothing that is there counts as far.
-        let (robot, world) = (Robot::new(&facts).unwrap(), World::new(&crowded.problem).unwrap());
-        let region = Region::of(&crowded, &robot, &world);
+        let (hands, world) = (Hands::new(&facts).unwrap(), World::new(&crowded.problem).unwrap());
+        let region = Region::of(&crowded, &hands, &world);
         let (far, _) = world.fixed.iter().partition::<Vec<_>, _>(|(solid, pose)| region.is_far(solid, pose));
         assert_eq!(far.len(), 300);
         let (solid, _) = world.fixed.last().unwrap();

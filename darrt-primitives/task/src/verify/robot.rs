@@ -21,25 +21,40 @@ pub(super) struct LinkSolid {
     pub(super) solid: Solid,
 }
 
+/// What all hands of a robot share.
+#[derive(Debug)]
+pub(super) struct Frame {
+    tree: Arc<KinematicTree>,
+    table: Arc<JointTable>,
+    solids: Arc<Vec<LinkSolid>>,
+    self_pairs: Arc<Vec<(usize, usize)>>,
+    /// By variable: may a step move it, whichever hand is at work?
+    is_planned: Vec<bool>,
+    arm_links: Arc<Vec<usize>>,
+    standing: Arc<Vec<Option<Isometry3<f64>>>>,
+}
+
 /// What may move a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
-    /// One of the joints of the manipulating arm.
+    /// One of the joints of the arms that are planned.
     Arm,
     /// The finger joint of the manipulating hand.
     Finger,
-    /// Torso, head, parked arm: stands still.
+    /// Torso, head, parked arm, fingers of a hand that is not at work: stands still.
     Parked,
 }
 
-/// The robot.
+/// The robot with one of its hands at work, the manipulating hand.
 #[derive(Debug)]
 pub(super) struct Robot {
-    pub(super) tree: KinematicTree,
-    pub(super) table: JointTable,
-    pub(super) solids: Vec<LinkSolid>,
+    /// Which of its hands that is, from 0.
+    pub(super) which: usize,
+    pub(super) tree: Arc<KinematicTree>,
+    pub(super) table: Arc<JointTable>,
+    pub(super) solids: Arc<Vec<LinkSolid>>,
     /// Indices into `solids`.
-    pub(super) self_pairs: Vec<(usize, usize)>,
+    pub(super) self_pairs: Arc<Vec<(usize, usize)>>,
     /// By variable.
     pub(super) roles: Vec<Role>,
     /// By variable.
@@ -59,10 +74,10 @@ pub(super) struct Robot {
     pub(super) is_bolted: bool,
     /// It moves along its heading only, and turns on the spot.
     pub(super) drives_along_heading: bool,
-    /// Links that move with the manipulating arm or its fingers, in ascending order.
-    arm_links: Vec<usize>,
+    /// Links that move with the arms that are planned or their fingers, in ascending order.
+    arm_links: Arc<Vec<usize>>,
     /// By link: its pose in the frame of the robot's root, if it stands there whatever is planned.
-    standing: Vec<Option<Isometry3<f64>>>,
+    standing: Arc<Vec<Option<Isometry3<f64>>>>,
     pub(super) strength: Strength,
 }
 
@@ -79,11 +94,16 @@ pub(super) struct Strength {
     pub(super) push_force_n: f64,
 }
 
-impl Robot {
+fn refuse(error: &dyn std::fmt::Display) -> Refusal {
+    Refusal::whole(RefusalKind::Problem, format!("the robot of the problem cannot be built: {error}"))
+}
+
+fn variable(tree: &KinematicTree, name: &str) -> Result<usize, Refusal> {
+    tree.variable_index(name).ok_or_else(|| refuse(&format!("it has no joint `{name}`")))
+}
+
+impl Frame {
     pub(super) fn new(facts: &RobotFacts) -> Result<Self, Refusal> {
-        let refuse = |error: &dyn std::fmt::Display| {
-            Refusal::whole(RefusalKind::Problem, format!("the robot of the problem cannot be built: {error}"))
-        };
         let description = &*facts.description;
         let tree = KinematicTree::new(description).map_err(|e| refuse(&e))?;
         let bodies = link_bodies(description, &tree, &facts.meshes.paths()).map_err(|e| refuse(&e))?;
@@ -95,16 +115,40 @@ impl Robot {
                 solids.push(LinkSolid { link, link_from_solid: part.body_from_shape, solid });
             }
         }
+        let mut is_planned = vec![false; tree.variables().len()];
+        for name in facts.all_arm_joints().into_iter().chain(facts.finger_joints()) {
+            is_planned[variable(&tree, name)?] = true;
+        }
+        let self_pairs = self_pairs(&tree, &solids, &facts.self_pairs);
+        let table = JointTable::new(description, &tree);
+        let arm_links = links_moved(&tree, |variable| is_planned.get(variable) == Some(&true));
+        let standing = standing(&tree, &is_planned, facts);
+        Ok(Self {
+            tree: Arc::new(tree),
+            table: Arc::new(table),
+            solids: Arc::new(solids),
+            self_pairs: Arc::new(self_pairs),
+            is_planned,
+            arm_links: Arc::new(arm_links),
+            standing: Arc::new(standing),
+        })
+    }
+}
+
+impl Robot {
+    /// The robot with this hand at work, counted from 0.
+    pub(super) fn new(frame: &Frame, facts: &RobotFacts, which: usize) -> Result<Self, Refusal> {
+        let Frame { tree, table, solids, self_pairs, is_planned, arm_links, standing } = frame;
+        let arms = facts.all_arm_joints();
+        let facts = facts.of_hand(which);
         let link = |name: &String| tree.link_index(name).ok_or_else(|| refuse(&format!("it has no link `{name}`")));
         let fingers = facts.finger_links.iter().map(link).collect::<Result<Vec<_>, _>>()?;
         let tips = [link(&facts.tip_links[0])?, link(&facts.tip_links[1])?];
         let tool = link(&facts.tool_link)?;
-        let variable =
-            |name: &str| tree.variable_index(name).ok_or_else(|| refuse(&format!("it has no joint `{name}`")));
-        let finger_joint = variable(&facts.finger_joint)?;
-        let mut roles = vec![Role::Parked; tree.variables().len()];
-        for name in &facts.arm_joints {
-            roles[variable(name)?] = Role::Arm;
+        let finger_joint = variable(tree, &facts.finger_joint)?;
+        let mut roles = vec![Role::Parked; is_planned.len()];
+        for name in arms {
+            roles[variable(tree, name)?] = Role::Arm;
         }
         roles[finger_joint] = Role::Finger;
         let limits = tree.variables().iter().zip(&roles).map(|(variable, role)| {
@@ -113,14 +157,10 @@ impl Robot {
             if is_soft { variable.soft_limit } else { variable.limit }
         });
         let limits = limits.collect();
-        let self_pairs = self_pairs(&tree, &solids, &facts.self_pairs);
-        let table = JointTable::new(description, &tree);
-        let arm_links = links_moved(&tree, |variable| roles.get(variable) != Some(&Role::Parked));
-        let standing = standing(&tree, &roles, facts);
         let wrist = facts.arm_joints.last().ok_or_else(|| refuse(&"its arm has no joints"))?;
-        let wrist = variable(wrist)?;
-        let hand = links_moved(&tree, |variable| variable == wrist);
-        let gap_rate = gap_rate(&tree, &solids, tool, tips, finger_joint);
+        let wrist = variable(tree, wrist)?;
+        let hand = links_moved(tree, |variable| variable == wrist);
+        let gap_rate = gap_rate(tree, solids, tool, tips, finger_joint);
         let strength = Strength {
             pad_length_m: facts.pad_length_m,
             grip_force_n: facts.grip_force_n,
@@ -128,10 +168,11 @@ impl Robot {
             push_force_n: facts.push_force_n,
         };
         Ok(Self {
-            tree,
-            table,
-            solids,
-            self_pairs,
+            which,
+            tree: Arc::clone(tree),
+            table: Arc::clone(table),
+            solids: Arc::clone(solids),
+            self_pairs: Arc::clone(self_pairs),
             roles,
             limits,
             tool,
@@ -142,10 +183,15 @@ impl Robot {
             gap_rate,
             is_bolted: facts.is_bolted,
             drives_along_heading: facts.drives_along_heading,
-            arm_links,
-            standing,
+            arm_links: Arc::clone(arm_links),
+            standing: Arc::clone(standing),
             strength,
         })
+    }
+
+    /// Name of the link whose frame is the tool frame.
+    pub(super) fn tool_name(&self) -> &str {
+        self.tree.link_names().get(self.tool).map_or("tool", |name| name)
     }
 
     /// Name of a variable's joint.
@@ -195,7 +241,7 @@ impl Robot {
     pub(super) fn extents(&self, held_m: f64) -> Vec<f64> {
         let count = self.tree.link_count();
         let mut extents = vec![0.0_f64; count];
-        for solid in &self.solids {
+        for solid in &*self.solids {
             let reach = solid.link_from_solid.translation.vector.norm() + solid.solid.reach();
             extents[solid.link] = extents[solid.link].max(reach);
         }
@@ -276,11 +322,11 @@ fn links_moved(tree: &KinematicTree, moves: impl Fn(usize) -> bool) -> Vec<usize
 
 /// The poses, in the frame of the root, of the links that stand there: no joint is above them but parked ones that the problem puts
 /// somewhere. By link.
-fn standing(tree: &KinematicTree, roles: &[Role], facts: &RobotFacts) -> Vec<Option<Isometry3<f64>>> {
+fn standing(tree: &KinematicTree, is_planned: &[bool], facts: &RobotFacts) -> Vec<Option<Isometry3<f64>>> {
     let mut values = tree.neutral();
     let mut is_put = vec![false; values.len()];
     for (name, value) in &facts.start {
-        let parked = tree.variable_index(name).filter(|variable| roles.get(*variable) == Some(&Role::Parked));
+        let parked = tree.variable_index(name).filter(|variable| is_planned.get(*variable) == Some(&false));
         if let Some((slot, put)) = parked.and_then(|v| Some((values.get_mut(v)?, is_put.get_mut(v)?))) {
             (*slot, *put) = (*value, true);
         }
@@ -316,11 +362,12 @@ fn self_pairs(tree: &KinematicTree, solids: &[LinkSolid], links: &[[String; 2]])
 mod tests {
     use super::*;
     use crate::testing::builtin;
+    use crate::verify::hands::Hands;
     use rand::{RngExt as _, SeedableRng as _};
 
     #[test]
     fn no_solid_travels_farther_than_the_rates_say() {
-        let robot = Robot::new(&crate::testing::facts(&builtin("plate1").unwrap())).unwrap();
+        let robot = Hands::new(&crate::testing::facts(&builtin("plate1").unwrap())).unwrap().first;
         let rates = robot.travel_rates(&robot.extents(0.0));
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(9);
         let (mut before, mut after) = (Vec::new(), Vec::new());
@@ -336,7 +383,7 @@ mod tests {
             let bound = 0.1
                 + 0.02 * rates[values.len()]
                 + values.iter().zip(&moved).zip(&rates).map(|((a, b), r)| (a - b).abs() * r).sum::<f64>();
-            for solid in &robot.solids {
+            for solid in &*robot.solids {
                 let (low, high) = solid.solid.shape().unwrap().local_aabb();
                 for corner in [low, high] {
                     let p = solid.link_from_solid * corner;
@@ -349,7 +396,7 @@ mod tests {
 
     #[test]
     fn the_links_of_the_arm_are_all_that_an_arm_moves() {
-        let robot = Robot::new(&crate::testing::facts(&builtin("plate1").unwrap())).unwrap();
+        let robot = Hands::new(&crate::testing::facts(&builtin("plate1").unwrap())).unwrap().first;
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(10);
         let (mut now, mut anew) = (Vec::new(), Vec::new());
         let mut values: Vec<f64> = robot.limits.iter().map(|limit| limit.clamp(0.0)).collect();
@@ -369,7 +416,7 @@ mod tests {
 
     #[test]
     fn only_one_arm_and_one_finger_joint_may_move() {
-        let robot = Robot::new(&crate::testing::facts(&builtin("plate1").unwrap())).unwrap();
+        let robot = Hands::new(&crate::testing::facts(&builtin("plate1").unwrap())).unwrap().first;
         let count = |role| robot.roles.iter().filter(|r| **r == role).count();
         assert_eq!((count(Role::Arm), count(Role::Finger)), (7, 1));
         assert!(robot.is_finger("r_gripper_l_finger_tip_link") && !robot.is_finger("l_gripper_l_finger_tip_link"));

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Point2, Point3, Vector2};
 
+use super::hands::Hands;
 use super::motion::State;
 use super::refusal::{Refusal, RefusalKind, Site};
 use super::robot::{Robot, world_from_robot};
@@ -65,17 +66,18 @@ fn is_about(rule: &Steer, name: &str, step: &Step) -> bool {
 
 /// By step of the plan: which of the rules with `require` it fulfils, whether the plan is right or not.
 pub(super) fn met_by_step(plan: &PlanFile, facts: &RobotFacts) -> Result<Vec<BTreeSet<usize>>, Refusal> {
-    let (robot, world) = (Robot::new(facts)?, World::new(&plan.problem)?);
-    let read = |waypoint: &Waypoint| State::read(waypoint, &robot, &world).ok();
+    let (hands, world) = (Hands::new(facts)?, World::new(&plan.problem)?);
+    let read = |waypoint: &Waypoint| State::read(waypoint, &hands.first, &world).ok();
     let mut before = read(&plan.start);
     let mut all = Vec::new();
     for step in &plan.steps {
         let after = step.waypoints.last().and_then(read);
+        let robot = hands.get(step.hand(facts).unwrap_or(0));
         let contract = plan.contracts.get(&step.primitive).copied();
         let judged = contract.zip(before.as_ref().zip(after.as_ref()));
         let subject = judged.and_then(|(contract, states)| subject(contract, step, states));
         let is_met = |rule: &Steer, (name, at): (&str, &State)| {
-            rule.require && is_about(rule, name, step) && fault(rule, name, at, (&world, &robot)).is_none()
+            rule.require && is_about(rule, name, step) && fault(rule, name, at, (&world, robot)).is_none()
         };
         let rules = plan.problem.steers.iter().enumerate();
         let met = rules.filter(|(_, rule)| subject.is_some_and(|subject| is_met(rule, subject)));

@@ -63,6 +63,9 @@ pub struct RobotData {
     pub variables: Vec<VariableData>,
     /// Index of the link to which a held object is rigid.
     pub tool: usize,
+    /// By hand, of a robot with several: index of the link to which what it holds is rigid.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tools: Vec<usize>,
 }
 
 /// One link.
@@ -256,6 +259,9 @@ pub struct StepData {
     /// Index of the object that is pushed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pushes: Option<usize>,
+    /// Index of the link of the hand at work, if it is not the robot's first: what is held is rigid to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tool: Option<usize>,
     /// What is in the hand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub holds: Option<HoldData>,

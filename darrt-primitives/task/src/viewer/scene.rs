@@ -12,6 +12,7 @@ use super::data::{
 };
 use super::meshes;
 use crate::plan_file::JointTable;
+use crate::plan_file::tool::tool_links;
 use crate::problem_file::geometry::Geometry;
 use crate::problem_file::{GoalTarget, ProblemFile};
 use crate::robot::RobotFacts;
@@ -24,7 +25,8 @@ pub struct RobotModel {
     table: JointTable,
     /// By link.
     pub(super) bodies: Vec<Option<Body>>,
-    pub(super) tool: usize,
+    /// By hand, at least one.
+    tools: Vec<usize>,
     /// By variable: does the joint slide?
     slides: Vec<bool>,
 }
@@ -37,7 +39,7 @@ impl RobotModel {
     pub fn new(description: &RobotDescription, meshes: &MeshPlaces, tool: &str) -> Result<Self, ViewerError> {
         let tree = KinematicTree::new(description)?;
         let bodies = link_bodies(description, &tree, &meshes.paths())?;
-        let tool = tree.link_index(tool).ok_or_else(|| ViewerError::NoLink { name: tool.to_owned() })?;
+        let tools = vec![link_called(&tree, tool)?];
         let is_sliding = |joint: &JointDescription| joint.kind == JointKind::Sliding;
         let slides = tree.variables().iter().map(|variable| {
             description.joints.iter().find(|joint| joint.name == variable.name).is_some_and(is_sliding)
@@ -48,7 +50,7 @@ impl RobotModel {
             table: JointTable::new(description, &tree),
             tree,
             bodies,
-            tool,
+            tools,
             slides,
         })
     }
@@ -58,7 +60,21 @@ impl RobotModel {
     /// # Errors
     /// As [`RobotModel::new`].
     pub fn of(facts: &RobotFacts) -> Result<Self, ViewerError> {
-        Self::new(&facts.description, &facts.meshes, &facts.tool_link)
+        let mut robot = Self::new(&facts.description, &facts.meshes, &facts.tool_link)?;
+        for tool in tool_links(facts).into_iter().skip(1) {
+            robot.tools.push(link_called(&robot.tree, tool)?);
+        }
+        Ok(robot)
+    }
+
+    /// The link to which what a hand holds is rigid; hands are counted from 0.
+    pub(super) fn tool(&self, hand: usize) -> usize {
+        self.tools.get(hand).copied().unwrap_or_default()
+    }
+
+    /// Their names, by hand.
+    pub(super) fn tool_names(&self) -> Vec<&str> {
+        self.tools.iter().filter_map(|tool| self.tree.link_names().get(*tool)).map(|name| &**name).collect()
     }
 
     /// The joints that a waypoint lists.
@@ -78,7 +94,8 @@ impl RobotModel {
             name: self.name.clone(),
             links: links.map(|(link, name)| self.link(link, name)).collect(),
             variables: variables.collect(),
-            tool: self.tool,
+            tool: self.tool(0),
+            tools: if self.tools.len() > 1 { self.tools.clone() } else { Vec::new() },
         }
     }
 
@@ -117,6 +134,10 @@ impl RobotModel {
         }
         true
     }
+}
+
+fn link_called(tree: &KinematicTree, name: &str) -> Result<usize, ViewerError> {
+    tree.link_index(name).ok_or_else(|| ViewerError::NoLink { name: name.to_owned() })
 }
 
 /// JSON knows no infinity.

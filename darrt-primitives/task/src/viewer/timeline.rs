@@ -69,6 +69,8 @@ impl Moment {
 pub(super) struct Act<'a> {
     pub(super) step: &'a Step,
     pub(super) kind: picture::Act,
+    /// Which hand is at work, from 0.
+    hand: usize,
     pub(super) moments: Vec<Moment>,
     pub(super) object: Option<usize>,
     pub(super) pushes: Option<usize>,
@@ -84,6 +86,7 @@ pub(super) struct Act<'a> {
 pub(super) fn acts<'a>(plan: &'a PlanFile, robot: &RobotModel) -> Result<Vec<Act<'a>>, ViewerError> {
     // What is drawn need not be right: a clock that is none is not followed.
     let clock = plan.timing.as_ref().filter(|timing| check(plan, timing).is_ok());
+    let tools = robot.tool_names();
     let act = |(index, step): (usize, &'a Step)| {
         let place = || format!("steps[{index}]");
         let find = |name: &str| {
@@ -103,11 +106,16 @@ pub(super) fn acts<'a>(plan: &'a PlanFile, robot: &RobotModel) -> Result<Vec<Act
         if moments.len() < 2 {
             return Err(ViewerError::Missing { place: place(), what: "waypoint", name: "second".to_owned() });
         }
+        let hand = step.hand_among(&tools).map_err(|error| {
+            let place = format!("steps[{index}].tool");
+            ViewerError::Tool { place, error: Box::new(error) }
+        })?;
         let holds = step.holds.as_ref();
         let holds = holds.map(|hold| Ok::<_, ViewerError>((find(&hold.object)?, hold.tool_from_object.into())));
         Ok(Act {
             step,
             kind: picture::Act::of(contract),
+            hand,
             moments,
             object: step.object.as_deref().map(find).transpose()?,
             pushes: step.pushes.as_deref().map(find).transpose()?,
@@ -141,6 +149,7 @@ impl Act<'_> {
             times: self.times(robot),
             object: self.object,
             pushes: self.pushes,
+            tool: (self.hand > 0).then(|| robot.tool(self.hand)),
             holds: self.holds.as_ref().map(hold),
             contacts: contacts.map(|pair| [pair.a.clone(), pair.b.clone(), reason(pair.reason).to_owned()]).collect(),
             base: if moves(&base) { base } else { Vec::new() },
@@ -227,7 +236,7 @@ impl Act<'_> {
         // The lengths are the tree's own.
         robot.tree.forward(&moment.joints, &world_from_base(&moment.base), world_from_link).ok()?;
         if let Some((object, tool_from_object)) = self.holds {
-            *moment.objects.get_mut(object)? = world_from_link.get(robot.tool)? * tool_from_object;
+            *moment.objects.get_mut(object)? = world_from_link.get(robot.tool(self.hand))? * tool_from_object;
         }
         Some(moment)
     }
@@ -240,5 +249,40 @@ const fn reason(reason: ContactReason) -> &'static str {
         ContactReason::Grasp => "grasp",
         ContactReason::Retreat => "retreat",
         ContactReason::Support => "support",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{LEFT_TOOL, both_hands, facts, left_handed};
+    use crate::viewer::of_plan;
+
+    #[test]
+    fn what_the_second_hand_holds_goes_with_its_tool() {
+        let plan = left_handed();
+        let robot = RobotModel::of(&both_hands(&plan.problem)).unwrap();
+        let tool = robot.tree.link_index(LEFT_TOOL).unwrap();
+        let data = of_plan(&plan, "", &robot).unwrap();
+        assert_eq!((data.robot.tools.len(), data.robot.tools[1]), (2, tool));
+        assert!(data.steps.iter().all(|step| step.tool == Some(tool)));
+        let mut links = vec![Isometry3::identity(); robot.tree.link_count()];
+        for act in acts(&plan, &robot).unwrap().iter().filter(|act| act.holds.is_some()) {
+            let (object, _) = act.holds.unwrap();
+            // At a waypoint the file says the same.
+            let moment = act.at(&robot, 1.0, &mut links).unwrap();
+            let off = moment.objects[object].translation.vector - act.moments[1].objects[object].translation.vector;
+            assert!(off.norm() < 1e-6, "{off}");
+        }
+        // Of a robot with one hand nothing is said of tools.
+        let mut alone = plan.clone();
+        alone.steps.iter_mut().for_each(|step| step.tool = None);
+        let data = of_plan(&alone, "", &RobotModel::of(&facts(&plan.problem)).unwrap()).unwrap();
+        let text = serde_json::to_string(&data).unwrap();
+        assert!(!text.contains("\"tools\"") && data.robot.tool == tool && data.steps.iter().all(|s| s.tool.is_none()));
+        let mut lie = plan;
+        lie.steps[2].tool = Some("hook".to_owned());
+        let error = of_plan(&lie, "", &robot).unwrap_err().to_string();
+        assert!(error.contains("`steps[2].tool`") && error.contains(LEFT_TOOL), "{error}");
     }
 }

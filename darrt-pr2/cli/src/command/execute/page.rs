@@ -95,6 +95,7 @@ fn of_step(frames: &[Frame], name: String, colour: &str) -> Option<StepData> {
         times: frames.iter().map(|frame| rounded(frame.time_s - first.time_s)).collect(),
         object: None,
         pushes: None,
+        tool: None,
         holds: None,
         contacts: Vec::new(),
         base: frames.iter().map(|frame| frame.base.map(rounded)).collect(),

@@ -10,13 +10,13 @@ const SAME_S: f64 = 1e-6;
 /// The bytes of the table, or why there are none.
 ///
 /// Columns: `time_s`, `step` (from 1), `primitive`, position of base and of every joint, velocity of base and of every joint that
-/// may move, and `event`: `sense`, or `fingers WIDTH_M FORCE_N` without a force where it is not limited.
+/// may move, and `event`: `sense`, or `fingers WIDTH_M FORCE_N` without a force where it is not limited; `fingers of TOOL ...` for
+/// a hand that is not the robot's first.
 pub(super) fn file(plan: &PlanFile, sampled: &Sampled) -> Result<Vec<u8>, String> {
     let words = |error: &dyn std::fmt::Display| error.to_string();
     let mut table = csv::Writer::from_writer(Vec::new());
     let timed = sampled.timed();
-    let mut moving = timed.arm().to_vec();
-    moving.push(timed.finger());
+    let moving = sampled.moving();
     let joints = 0..timed.tree().variables().len();
     let mut head = ["time_s", "step", "primitive"].map(str::to_owned).to_vec();
     head.extend(BASE_JOINTS.map(str::to_owned));
@@ -30,7 +30,7 @@ pub(super) fn file(plan: &PlanFile, sampled: &Sampled) -> Result<Vec<u8>, String
     for (t_s, moment) in sampled.samples() {
         let mut happening = Vec::new();
         while let Some(event) = events.next_if(|event| event.time_s <= t_s + SAME_S) {
-            happening.push(told(sampled, event));
+            happening.push(told(plan, sampled, event));
         }
         table.write_record(row(plan, *t_s, moment, &moving, &happening.join("; "))).map_err(|error| words(&error))?;
     }
@@ -49,12 +49,14 @@ fn row(plan: &PlanFile, t_s: f64, moment: &Moment, moving: &[usize], event: &str
     row
 }
 
-fn told(sampled: &Sampled, event: &Event) -> String {
+fn told(plan: &PlanFile, sampled: &Sampled, event: &Event) -> String {
+    let tool = plan.steps.get(event.step).and_then(|step| step.tool.as_ref());
+    let fingers = tool.map_or_else(|| "fingers".to_owned(), |tool| format!("fingers of {tool}"));
     match (event.kind, sampled.command(event)) {
         (EventKind::Fingers { force_n: Some(force_n), .. }, Some(command)) => {
-            format!("fingers {} {force_n}", command.position)
+            format!("{fingers} {} {force_n}", command.position)
         }
-        (EventKind::Fingers { .. }, Some(command)) => format!("fingers {}", command.position),
+        (EventKind::Fingers { .. }, Some(command)) => format!("{fingers} {}", command.position),
         _ => "sense".to_owned(),
     }
 }

@@ -26,20 +26,33 @@ fn write(plan: &PlanFile, sampled: &Sampled) -> mcap::McapResult<Vec<u8>> {
             && let Some(step) = plan.steps.get(moment.step)
         {
             last_step = Some(moment.step);
-            tape.event(&json!({ "kind": "step", "step": moment.step + 1, "primitive": step.primitive.as_str(),
-                "object": step.object }))?;
+            let mut event = json!({ "kind": "step", "step": moment.step + 1, "primitive": step.primitive.as_str(),
+                "object": step.object });
+            add_tool(&mut event, plan, moment.step);
+            tape.event(&event)?;
         }
         while let Some(event) = happening.next_if(|event| event.time_s <= *t_s + 1e-6) {
-            let value = match (event.kind, sampled.command(event)) {
+            let mut value = match (event.kind, sampled.command(event)) {
                 (EventKind::Fingers { force_n, .. }, Some(command)) => {
                     json!({ "kind": "fingers", "step": event.step + 1, "width_m": command.position, "force_n": force_n })
                 }
                 _ => json!({ "kind": "sense", "step": event.step + 1 }),
             };
+            if matches!(event.kind, EventKind::Fingers { .. }) {
+                add_tool(&mut value, plan, event.step);
+            }
             tape.event(&value)?;
         }
     }
     tape.finish()
+}
+
+/// Says which hand is at work in a step, from 0, where it is not the robot's first.
+fn add_tool(event: &mut serde_json::Value, plan: &PlanFile, step: usize) {
+    let tool = plan.steps.get(step).and_then(|step| step.tool.as_ref());
+    if let (Some(tool), Some(event)) = (tool, event.as_object_mut()) {
+        event.insert("tool".to_owned(), json!(tool));
+    }
 }
 
 /// The frames of the links in those of their parents, of the root and of the objects in the world.

@@ -6,7 +6,7 @@ use darrt_core::random::{Purpose, stream};
 use darrt_core::state::ObjectId;
 use darrt_primitives::action::stance::Probe;
 use darrt_primitives::grasp::{Grasp, GraspFamily};
-use darrt_primitives::manipulator::{Configuration, Manipulator};
+use darrt_primitives::manipulator::{Configuration, JointVector as _, Manipulator};
 use darrt_primitives::mode::Contacts;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
@@ -45,9 +45,19 @@ impl<M: Manipulator> Asked<'_, M> {
         Variant { away_m, turned_rad, ..self.variant(q) }
     }
 
-    /// A state with the hand there in which nothing is wrong; else what is wrong with the one that came farthest.
+    /// A state with a hand there in which nothing is wrong; else what is wrong with the one of the first hand that came farthest.
     fn reached(&self, tool: &Isometry3<f64>) -> Result<Configuration<M::Joints>, Fault> {
-        let (m, start) = (self.m(), self.look.start);
+        let first = self.reached_with(0, tool);
+        let mut others = 1..self.m().manipulator().hands();
+        first.or_else(|fault| others.find_map(|hand| self.reached_with(hand, tool).ok()).ok_or(fault))
+    }
+
+    /// The same for one of the hands.
+    fn reached_with(&self, hand: usize, tool: &Isometry3<f64>) -> Result<Configuration<M::Joints>, Fault> {
+        let m = self.m();
+        let mut start = self.look.start.clone();
+        start.robot.arm = start.robot.arm.with_hand_at_work(hand);
+        let start = &start;
         let (robot, none) = (m.manipulator(), Contacts::default());
         let probe = Probe::new(m, start, start.mode.clone());
         probe.check_hand(tool, &none).map_err(|blame| {
@@ -70,12 +80,12 @@ impl<M: Manipulator> Asked<'_, M> {
         };
         for draw in 0..bases {
             let rng = &mut stream(0, 7, draw, Purpose::Attempt);
-            let base = if bases > 1 { robot.base_for(tool, rng) } else { start.robot.base };
-            if !robot.may_reach(&base, tool) {
+            let base = if bases > 1 { robot.base_for_hand(hand, tool, rng) } else { start.robot.base };
+            if !robot.may_reach_with(hand, &base, tool) {
                 continue;
             }
             for _ in 0..ARMS {
-                let Some(arm) = robot.inverse(&base, tool, rng) else { break };
+                let Some(arm) = robot.inverse_from(&start.robot.arm, &base, tool, rng) else { break };
                 let q = Configuration { base, arm };
                 match self.state_fault(&q) {
                     None => return Ok(q),

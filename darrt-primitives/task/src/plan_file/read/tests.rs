@@ -20,6 +20,7 @@ pub(in crate::plan_file) fn sample() -> PlanFile {
     let step = Step {
         primitive: PrimitiveName::PICK,
         object: Some("plate".to_owned()),
+        tool: Some("l_gripper_tool_frame".to_owned()),
         holds: Some(Hold { object: "plate".to_owned(), tool_from_object: pose }),
         pushes: None,
         allowed_contacts: AllowedContact::fingers(

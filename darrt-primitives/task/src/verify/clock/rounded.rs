@@ -7,7 +7,7 @@ use super::curve::Curve;
 use crate::plan_file::{PlanFile, Pose, Step, Waypoint};
 use crate::verify::motion::turn_between;
 use crate::verify::refusal::{Refusal, RefusalKind};
-use crate::verify::robot::{Robot, world_from_robot};
+use crate::verify::robot::world_from_robot;
 use crate::verify::world::World;
 
 /// How far the curve of a corner may be from the straight lines that are judged in its place, metres.
@@ -18,19 +18,19 @@ const MOST_CHORDS: f64 = 64.0;
 const SAME: f64 = 1e-6;
 
 /// The same plan, without a clock, in which every phase goes along its curve: straight lines, and corners cut into short ones.
-pub(super) fn rounded(plan: &PlanFile, steps: &[Timed<'_>], robot: &Robot) -> Result<PlanFile, Refusal> {
+pub(super) fn rounded(plan: &PlanFile, steps: &[Timed<'_>]) -> Result<PlanFile, Refusal> {
     let world = World::new(&plan.problem)?;
     let mut out = PlanFile { timing: None, ..plan.clone() };
     for (step, timed) in out.steps.iter_mut().zip(steps) {
         if timed.leaves_waypoints() {
-            step.waypoints = waypoints(timed, robot, &world)?;
+            step.waypoints = waypoints(timed, &world)?;
         }
     }
     Ok(out)
 }
 
-fn waypoints(timed: &Timed<'_>, robot: &Robot, world: &World<'_>) -> Result<Vec<Waypoint>, Refusal> {
-    let step = timed.step;
+fn waypoints(timed: &Timed<'_>, world: &World<'_>) -> Result<Vec<Waypoint>, Refusal> {
+    let (step, robot) = (timed.step, timed.robot);
     let held_m = step.holds.as_ref().map_or(0.0, |hold| {
         let held = world.object(&hold.object).and_then(|object| world.movables.get(object));
         let reach = held.map_or(0.0, |held| held.solid.reach());
@@ -65,7 +65,7 @@ fn waypoints(timed: &Timed<'_>, robot: &Robot, world: &World<'_>) -> Result<Vec<
                     continue;
                 }
                 last = gone;
-                out.push(waypoint(timed, robot, phase.knots.as_slice(), &curve, gone).ok_or_else(lost)?);
+                out.push(waypoint(timed, phase.knots.as_slice(), &curve, gone).ok_or_else(lost)?);
             }
         }
     }
@@ -80,7 +80,8 @@ fn travel_m(change: &[f64], rates: &[f64]) -> f64 {
 }
 
 /// Where everything is when so much of a phase has been gone.
-fn waypoint(timed: &Timed<'_>, robot: &Robot, knots: &[usize], curve: &Curve<'_>, gone: f64) -> Option<Waypoint> {
+fn waypoint(timed: &Timed<'_>, knots: &[usize], curve: &Curve<'_>, gone: f64) -> Option<Waypoint> {
+    let robot = timed.robot;
     let Step { holds, pushes, waypoints, .. } = timed.step;
     let point = curve.at(gone);
     let (line, share) = curve.pace(gone);

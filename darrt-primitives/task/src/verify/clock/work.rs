@@ -12,7 +12,7 @@ use crate::clock::limits::{
 use crate::plan_file::PlanFile;
 use crate::plan_file::timing::Phase;
 use crate::verify::refusal::{Refusal, RefusalKind};
-use crate::verify::robot::{Robot, world_from_robot};
+use crate::verify::robot::world_from_robot;
 
 /// Seconds between two looks at the hand.
 const LOOK_S: f64 = 0.02;
@@ -23,8 +23,9 @@ const SLACK: f64 = 0.05;
 /// What rounding may take from a wait, seconds.
 const WAIT_SLACK_S: f64 = 1e-9;
 
-pub(super) fn check(timed: &Timed<'_>, plan: &PlanFile, robot: &Robot, limits: &MotionLimits) -> Result<(), Refusal> {
-    check_waits(timed, robot, limits)?;
+pub(super) fn check(timed: &Timed<'_>, plan: &PlanFile, limits: &MotionLimits) -> Result<(), Refusal> {
+    let robot = timed.robot;
+    check_waits(timed, limits)?;
     let contract = timed.site.contract;
     let object = |name: &Option<String>| {
         let name = name.as_ref()?;
@@ -108,8 +109,8 @@ fn check_every_knot(timed: &Timed<'_>) -> Result<(), Refusal> {
 }
 
 /// The robot stands around grasps and contacts as long as it must.
-fn check_waits(timed: &Timed<'_>, robot: &Robot, limits: &MotionLimits) -> Result<(), Refusal> {
-    let finger = 3 + robot.finger_joint;
+fn check_waits(timed: &Timed<'_>, limits: &MotionLimits) -> Result<(), Refusal> {
+    let finger = 3 + timed.robot.finger_joint;
     let ends = |phase: &Phase, coordinate: usize| {
         let value = |knot: Option<&usize>| timed.points.get(*knot?)?.get(coordinate).copied();
         [value(phase.knots.first()), value(phase.knots.last())]

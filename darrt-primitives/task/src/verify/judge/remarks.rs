@@ -129,8 +129,8 @@ impl Judge<'_> {
         let (_, _, driven_m) = self.remarks.drive.get_or_insert(([x, y], step, 0.0));
         *driven_m += way.0;
         self.remarks.turned_rad += way.1;
-        let tool = self.links[self.robot.tool].translation.vector;
-        let out_m = tool.x.hypot(tool.y);
+        let tools = self.hands.all().map(|robot| self.links[robot.tool].translation.vector);
+        let out_m = tools.map(|tool| tool.x.hypot(tool.y)).fold(0.0, f64::max);
         if out_m > ARM_OUT_M && way.0 > 0.0 {
             self.remarks.warnings.push(Warning::new(WarningKind::ArmOut, Some(step), &[], out_m, ARM_OUT_M));
         }

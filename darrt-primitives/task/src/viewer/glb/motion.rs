@@ -166,7 +166,7 @@ impl Tracks {
         for part in 1..=HELD_PARTS {
             let part = f64::from(part) / f64::from(HELD_PARTS);
             let poses = from.between(to, part, data).link_poses(data);
-            if let Some(tool) = poses.get(data.robot.tool) {
+            if let Some(tool) = poses.get(step.tool.unwrap_or(data.robot.tool)) {
                 self.note_pose(*node, begin + part * (end - begin), &(tool * pose_of(&hold.tool_from_object)));
             }
         }

@@ -1,7 +1,7 @@
 // ---------------------------------------------------------------- hands on it
 /** The camera's place for a name. */
 function look(name) {
-  const { state, links } = moment, tool = links[robot.tool].slice(0, 3);
+  const { k, state, links } = moment, tool = links[toolOf(steps[k])].slice(0, 3);
   const points = [...starts.map(s => [s.base[0], s.base[1], 0.9]), ...starts.flatMap(s => s.objects), ...data.objects.flatMap(o => o.goals ?? [])];
   const [low, high] = [Math.min, Math.max].map(pick => [0, 1, 2].map(i => points.reduce((m, p) => pick(m, p[i]), points[0][i])));
   const size = Math.hypot(...minus(high, low)) + 1.6, middle = times(sum(low, high), 0.5);

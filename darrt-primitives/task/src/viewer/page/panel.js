@@ -15,6 +15,8 @@ const metres = m => m < 0.1 ? `${(1000 * m).toFixed(1)} mm` : `${m.toFixed(2)} m
 const shown = {};
 function show(id, text) { if (shown[id] !== text) $(id).textContent = shown[id] = text; }
 let shownStep = -1;
+/** What is done, and by which hand where there are several. */
+const called = step => robot.tools ? `${step.name}, ${robot.links[toolOf(step)].name}` : step.name;
 /** Everything but the scene itself. */
 function showMoment() {
   const { k, u, time, state } = moment, step = steps[k];
@@ -42,7 +44,7 @@ function showMoment() {
     shownStep = k;
     const chip = document.createElement('i');
     chip.style.background = step.colour;
-    $('now').replaceChildren(chip, `${k + 1}/${steps.length} ${step.name}`);
+    $('now').replaceChildren(chip, `${k + 1}/${steps.length} ${called(step)}`);
     const name = i => data.objects[i].name;
     show('what', [step.holds && `holds ${name(step.holds.object)}`, step.pushes !== undefined && `pushes ${name(step.pushes)}`,
       !step.holds && step.pushes === undefined && step.object !== undefined && `about ${name(step.object)}`].filter(Boolean).join(', ') || 'hand empty');
@@ -51,7 +53,7 @@ function showMoment() {
   }
   $('head').style.left = `${100 * time / duration}%`;
   if (document.activeElement !== $('time') || Number($('time').value) !== time) $('time').value = time;
-  $('time').setAttribute('aria-valuetext', `step ${k + 1} of ${steps.length}, ${step.name}, waypoint ${Math.floor(u) + 1} of ${step.times.length}`);
+  $('time').setAttribute('aria-valuetext', `step ${k + 1} of ${steps.length}, ${called(step)}, waypoint ${Math.floor(u) + 1} of ${step.times.length}`);
   show('status', `waypoint ${Math.floor(u + 1e-6) + 1}/${step.times.length} · ${time.toFixed(1)} / ${duration.toFixed(1)} s`);
 }
 

@@ -57,9 +57,11 @@ function linkPoses(base, joints, wanted) {
   });
   return poses;
 }
-/** The tool and the links above it. */
-const toTool = new Set();
-for (let i = robot.tool; i !== null; i = robot.links[i].parent) toTool.add(i);
+/** The tool of the hand at work in a step. */
+const toolOf = step => step?.tool ?? robot.tool;
+/** The tools, and the links above them. */
+const tools = robot.tools ?? [robot.tool], toTool = new Set();
+for (const tool of tools) for (let i = tool; i !== null; i = robot.links[i].parent) toTool.add(i);
 
 /** Base, joints and objects in step `k`, `u` waypoints from its beginning. */
 function stateAt(k, u) {
@@ -77,7 +79,7 @@ function stateAt(k, u) {
   }
   for (const { object, poses } of step.objects ?? []) state.objects[object] = between(poses[i], poses[i + 1], s);
   if (step.holds) {
-    const tool = linkPoses(state.base, state.joints, toTool)[robot.tool];
+    const tool = linkPoses(state.base, state.joints, toTool)[toolOf(step)];
     state.objects[step.holds.object] = product(tool, step.holds.tool_from_object);
   }
   return state;

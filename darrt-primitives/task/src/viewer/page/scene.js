@@ -22,11 +22,14 @@ function readColours() {
 /** Which joints move in the plan, and what each link is: part of the hand, of the arm, or of the rest. */
 const driven = new Set(steps.flatMap(step => (step.joints ?? []).map(track => track.variable)));
 const linkKind = [];
-// The hand is all below the last joint above the tool; the set begins at the tool.
-const wrist = [...toTool].find(i => robot.links[i].joint);
+// A hand is all below the last joint above its tool.
+const wrists = tools.map(tool => {
+  while (tool !== null && !robot.links[tool].joint) tool = robot.links[tool].parent;
+  return tool;
+});
 robot.links.forEach(({ parent, joint }, i) => {
   const above = linkKind[parent] ?? 'robot', isArm = above === 'arm' || (joint && driven.has(joint.variable));
-  linkKind[i] = above === 'hand' || i === wrist ? 'hand' : isArm ? 'arm' : 'robot';
+  linkKind[i] = above === 'hand' || wrists.includes(i) ? 'hand' : isArm ? 'arm' : 'robot';
 });
 let linkPieces, objectPieces, bodies;
 /** Makes the meshes, and finds out what each fixed body is to a person. */
@@ -56,7 +59,7 @@ function buildLines() {
     const colour = colours.number(step.colour);
     let before = null;
     for (let u = 0; u < step.times.length; u++) {
-      const state = stateAt(k, u), tool = linkPoses(state.base, state.joints, toTool)[robot.tool].slice(0, 3);
+      const state = stateAt(k, u), tool = linkPoses(state.base, state.joints, toTool)[toolOf(step)].slice(0, 3);
       const base = [state.base[0], state.base[1], 0.004];
       if (before) {
         line(before.tool, tool, colour, 0.9, 2);
@@ -121,7 +124,7 @@ function drawScene(coarsely) {
       }
       if (steps.length && Math.hypot(...minus(state.objects[i], data.start.objects[i])) > 0.01) put('', objectPieces[i], data.start.objects[i], 'clear', colours.start, 0.22);
     });
-    for (const ghost of ghostLinks.filter(ghost => Math.hypot(...minus(ghost[robot.tool], links[robot.tool])) > 0.3)) linkPieces.forEach((pieces, i) => put('', pieces, ghost[i], 'wire', colours.start));
+    for (const ghost of ghostLinks.filter(ghost => tools.some(tool => Math.hypot(...minus(ghost[tool], links[tool])) > 0.3))) linkPieces.forEach((pieces, i) => put('', pieces, ghost[i], 'wire', colours.start));
   }
   if (options.closest && !marks.button) {
     const { state: near } = data.why.nearest, poses = closestLinks ??= linkPoses(near.base, near.joints);
