@@ -49,6 +49,9 @@ const HOPELESS: [BuiltIn; 2] = [
 /// For arms of fewer joints than six, each for the robot that it names.
 const FEWER_JOINTS: [BuiltIn; 1] = [BuiltIn { name: "puck", text: include_str!("../scenes/puck.toml") }];
 
+/// For robots with two arms, each for the robot that it names.
+const TWO_ARMS: [BuiltIn; 1] = [BuiltIn { name: "hand-over", text: include_str!("../scenes/hand-over.toml") }];
+
 /// All of them; the paper's first.
 pub fn collection() -> Collection {
     Collection::new([
@@ -57,6 +60,7 @@ pub fn collection() -> Collection {
         ProblemGroup { title: "Everyday problems, each with one thing that is easy to get wrong", problems: &EVERYDAY },
         ProblemGroup { title: "Without a plan, and the answer says why", problems: &HOPELESS },
         ProblemGroup { title: "For an arm with few joints", problems: &FEWER_JOINTS },
+        ProblemGroup { title: "For a robot with two arms", problems: &TWO_ARMS },
     ])
 }
 

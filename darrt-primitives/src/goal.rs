@@ -142,9 +142,13 @@ impl<J: JointVector> RobotGoal<J> {
             joints.all(|((a, b), limit)| off(*a, *b, limit) <= self.tolerance_rad)
         });
         let tool = self.world_from_tool.as_ref().is_none_or(|wanted| {
-            let tool = m.manipulator().world_from_tool(q);
-            (tool.translation.vector - wanted.translation.vector).norm() <= self.tolerance_m
-                && tool.rotation.angle_to(&wanted.rotation) <= self.tolerance_rad
+            let is_there = |tool: Isometry3<f64>| {
+                (tool.translation.vector - wanted.translation.vector).norm() <= self.tolerance_m
+                    && tool.rotation.angle_to(&wanted.rotation) <= self.tolerance_rad
+            };
+            // Any of its hands.
+            let of_hand = |hand| Configuration { arm: q.arm.with_hand_at_work(hand), ..*q };
+            (0..m.manipulator().hands()).any(|hand| is_there(m.manipulator().world_from_tool(&of_hand(hand))))
         });
         base && arm && tool
     }
@@ -158,9 +162,14 @@ impl<J: JointVector> RobotGoal<J> {
     ) -> Option<PartialState<Tabletop<M>>> {
         let robot = m.manipulator();
         if let Some(tool) = &self.world_from_tool {
+            let hands = robot.hands();
+            // Joints that do not move the hand may be anywhere.
+            let others = m.settings().postures.first().unwrap_or(m.robot().zeros());
             let stance = (0..STANCES).find_map(|_| {
-                let base = self.base.unwrap_or_else(|| robot.base_for(tool, rng));
-                let arm = self.arm.or_else(|| robot.inverse(&base, tool, rng))?;
+                let hand = if hands > 1 { rng.random_range(0..hands) } else { 0 };
+                let now = others.with_hand_at_work(hand);
+                let base = self.base.unwrap_or_else(|| robot.base_for_hand(hand, tool, rng));
+                let arm = self.arm.or_else(|| robot.inverse_from(&now, &base, tool, rng))?;
                 let stance = Configuration { base, arm };
                 m.robot().contains(&stance).then_some(stance)
             })?;

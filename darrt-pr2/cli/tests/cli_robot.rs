@@ -29,7 +29,7 @@ fn refused(folder: &Path, arguments: &[&str]) -> String {
 }
 
 /// The robots inside.
-const ROBOTS: [&str; 4] = ["mobile-arm", "panda-arm", "planar-arm", "table-arm"];
+const ROBOTS: [&str; 5] = ["mobile-arm", "panda-arm", "planar-arm", "table-arm", "two-arm"];
 
 #[test]
 fn the_guide_can_be_followed() {

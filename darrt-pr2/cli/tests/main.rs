@@ -8,6 +8,7 @@ mod cli_export;
 mod cli_plan;
 mod cli_robot;
 mod cli_robot_new;
+mod cli_two_arms;
 mod cli_usage;
 mod house;
 mod no_plan;

@@ -31,9 +31,10 @@ pub fn travel<M: Manipulator>(
     match order(m, chain, target, rng) {
         Order::BaseFirst => {}
         Order::ArmFirst => arm_to(m, chain, &target.arm, gap_m),
-        Order::Through(arm) => arm_to(m, chain, &arm, gap_m),
+        Order::Through(arm) => arm_to(m, chain, &arm.with_hand_at_work(target.arm.hand_at_work()), gap_m),
     }
-    base_to(m, chain, &target.base, gap_m);
+    // The hand that goes to work is the one that is opened, before the drive.
+    drive_to(m, chain, &target.base, target.arm.hand_at_work(), gap_m);
     arm_to(m, chain, &target.arm, gap_m);
 }
 
@@ -50,8 +51,13 @@ pub fn arm_to<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>, arm: &M::Jo
 
 /// Moves the base in a straight line; nothing if it is already there.
 pub fn base_to<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>, base: &[f64; 3], gap_m: f64) {
+    let hand = chain.end.robot.arm.hand_at_work();
+    drive_to(m, chain, base, hand, gap_m);
+}
+
+fn drive_to<M: Manipulator>(m: &Tabletop<M>, chain: &mut Chain<M>, base: &[f64; 3], hand: usize, gap_m: f64) {
     if chain.end.robot.base != *base {
-        let robot = Configuration { base: *base, arm: chain.end.robot.arm };
+        let robot = Configuration { base: *base, arm: chain.end.robot.arm.with_hand_at_work(hand) };
         let primitive =
             if chain.end.mode.held().is_some() { primitive::BASE_RIGID_TRANSFER } else { primitive::BASE_TRANSIT };
         go(m, chain, robot, gap_m, primitive);

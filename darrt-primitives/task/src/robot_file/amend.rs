@@ -71,8 +71,9 @@ pub fn amend(
     if let Some(hand) = &file.hand {
         hand.add(&mut description)?;
     }
-    let mut first = with_tool(file.first_arm(), &mut description)?;
-    let mut second = file.second_arm().map(|tables| with_tool(tables, &mut description)).transpose()?;
+    let is_of_two = file.second.is_some();
+    let mut first = with_tool(file.first_arm(), is_of_two, &mut description)?;
+    let mut second = file.second_arm().map(|tables| with_tool(tables, is_of_two, &mut description)).transpose()?;
     if let Some(joint) = stand(file, &mut description)? {
         for arm in std::iter::once(&mut first).chain(&mut second) {
             arm.joints.insert(0, joint.clone());
@@ -101,7 +102,7 @@ pub fn amend(
 }
 
 /// An arm with its tool frame and the joints that follow the one of its hand; its tips are still those of the file.
-fn with_tool(of: ArmTables<'_>, description: &mut RobotDescription) -> Result<AmendedArm, Fault> {
+fn with_tool(of: ArmTables<'_>, is_of_two: bool, description: &mut RobotDescription) -> Result<AmendedArm, Fault> {
     let joints = arm_joints(of, description)?;
     let wrist = joints.last().and_then(|name| joint_index(description, name));
     let wrist = wrist.ok_or_else(|| Fault::new(of.key("arm.to"), "is moved by no joint of the arm"))?;
@@ -116,7 +117,9 @@ fn with_tool(of: ArmTables<'_>, description: &mut RobotDescription) -> Result<Am
     let tool_link = if link_from_tool == Isometry3::identity() {
         of.tool.link.clone()
     } else {
-        let name = free_name(description, "tool");
+        // Where there are two, people read which one is meant.
+        let wanted = if is_of_two { format!("{}_tool", of.tool.link) } else { "tool".to_owned() };
+        let name = free_name(description, &wanted);
         add_fixed(description, tool, &name, link_from_tool);
         name
     };
