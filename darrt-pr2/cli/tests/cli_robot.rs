@@ -50,7 +50,7 @@ fn the_guide_can_be_followed() {
             commands += 1;
         }
     }
-    assert_eq!(commands, 8);
+    assert_eq!(commands, 10);
     let plan = std::fs::read_to_string(folder.path().join("mine.plan.json")).unwrap();
     assert!(plan.contains("\"file\": \"my.toml\""), "a plan names the robot file from its own folder");
     assert!(folder.path().join("first.html").exists());
