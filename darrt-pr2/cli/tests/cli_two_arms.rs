@@ -33,6 +33,18 @@ fn what_one_hand_sets_down_the_other_takes_up() {
             let checked = darrt(folder.path(), how);
             assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
         }
+        // A driver is told which hand; what executes plans here has one arm and says so.
+        let told = darrt(folder.path(), &["export", "plan.json", "--to", "json", "-o", "told.json"]);
+        assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
+        let told = std::fs::read_to_string(folder.path().join("told.json")).unwrap();
+        let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+        let hands: BTreeSet<_> =
+            told["gripper_commands"].as_array().unwrap().iter().map(|c| c["tool"].as_str()).collect();
+        assert_eq!(hands, BTreeSet::from([None, Some("left_hand_tool")]));
+        assert!(told["groups"].as_object().unwrap().contains_key("second_gripper"));
+        let executed = darrt(folder.path(), &["execute", "plan.json"]);
+        let words = String::from_utf8_lossy(&executed.stderr);
+        assert!(!executed.status.success() && words.contains("the first arm and hand of a robot only"), "{words}");
         let steps = steps(&std::fs::read_to_string(folder.path().join("plan.json")).unwrap());
         let of = |primitive: &str| -> BTreeSet<_> {
             steps.iter().filter(|(name, _)| name == primitive).map(|(_, tool)| tool.clone()).collect()

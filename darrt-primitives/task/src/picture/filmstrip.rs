@@ -112,10 +112,9 @@ fn draw_caption(story: &Story, index: usize, step: &StoryStep, at: &Point2<f64>,
     };
     let line = at + Vector2::new(2.0 * badge::RADIUS + 7.0, 18.0);
     page.append(ink::bold(ink::text(&line, 11.5, palette::TEXT, Anchor::Start, &heading)));
-    let words = match story.tool_of(step) {
-        Some(tool) => format!("{tool}: {}", travel.in_words()),
-        None => travel.in_words(),
-    };
+    // In a step in which a hand only opens nothing goes anywhere.
+    let parts = [story.tool_of(step).map(str::to_owned), Some(travel.in_words()).filter(|words| !words.is_empty())];
+    let words = parts.into_iter().flatten().collect::<Vec<_>>().join(": ");
     for (row, text) in (0_u8..).zip(ink::wrapped(&words, 10.5, width)) {
         let line = at + Vector2::new(2.0, 34.0 + 12.0 * f64::from(row));
         page.append(ink::text(&line, 10.5, palette::QUIET, Anchor::Start, &text));
