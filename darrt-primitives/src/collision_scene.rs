@@ -353,7 +353,9 @@ impl CollisionScene {
     ) {
         let fingers = self.fingers.get(state.robot.arm.hand_at_work());
         if let Some((object, fingers)) = self.objects.get(object.index()).zip(fingers) {
-            fingers.iter().for_each(|finger| out.allow(*finger, *object, reason));
+            for finger in fingers {
+                out.allow(*finger, *object, reason);
+            }
         }
     }
 

@@ -145,15 +145,15 @@ impl CollisionScene {
             Some((ones, others))
         });
         let held = mode.held().and_then(|held| body(held.object)).into_iter().collect();
-        self.write(Terms { strict, near, held, hand }, keep);
+        self.write(&Terms { strict, near, held, hand }, keep);
     }
 
     /// How far every pair keeps while the hand is at work nowhere: into `keep`.
     pub(super) fn keep_alone(&self, strict: Strict, keep: &mut Keep) {
-        self.write(Terms { strict, ..Terms::default() }, keep);
+        self.write(&Terms { strict, ..Terms::default() }, keep);
     }
 
-    fn write(&self, terms: Terms, keep: &mut Keep) {
+    fn write(&self, terms: &Terms, keep: &mut Keep) {
         let SafetySettings { robot_margin_m, held_margin_m, object_margin_m, least_margin_m, contact_margin_m, .. } =
             self.strictness.safety;
         let unseen_m = if terms.strict.is_between { 0.0 } else { self.unseen_m };
@@ -183,7 +183,7 @@ impl CollisionScene {
             may(terms.held, BodySet::ALL, held_m);
             may(BodySet::ALL, BodySet::ALL, object_m);
         }
-        keep.terms = terms;
+        keep.terms = *terms;
     }
 
     /// Pairs that do not touch in `state`, though they are nearer than the least margin: from now on they may be as near as

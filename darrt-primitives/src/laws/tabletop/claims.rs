@@ -8,7 +8,7 @@ use crate::manipulator::Manipulator;
 
 impl<M: Manipulator> Trial<'_, M> {
     pub(super) fn claims(&self) -> Result<(), Broken> {
-        let widest = self.m.manipulator().hand().max_gap_m();
+        let widest = self.m.manipulator().hand_of(self.during.mode.hand()).max_gap_m();
         for mode in [&self.during.mode, &self.end.mode] {
             let gap_m = mode.gap_m();
             // What is held may be a little wider than the fingers open, by its own rounding.

@@ -53,9 +53,12 @@ impl<M: Manipulator> Trial<'_, M> {
     }
 
     fn is_finger_on(&self, blame: &Blame, name: &str) -> bool {
-        let links = self.m.manipulator().links();
-        let is_finger =
-            |body: &str| links.iter().any(|link| link.group == LinkGroup::Finger && *link.body.name == *body);
+        let robot = self.m.manipulator();
+        let is_finger = |body: &str| {
+            let mut links = robot.links().iter().enumerate().filter(|(_, link)| link.group == LinkGroup::Finger);
+            links
+                .any(|(number, link)| *link.body.name == *body && robot.hand_of_link(number) == self.during.mode.hand())
+        };
         let pairs = [(&blame.first, &blame.second), (&blame.second, &blame.first)];
         blame.kind == BlockKind::RobotObject && pairs.iter().any(|(a, b)| is_finger(a) && ***b == *name)
     }

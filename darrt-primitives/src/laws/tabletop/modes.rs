@@ -4,7 +4,7 @@ use darrt_core::laws::{Broken, ensure};
 use darrt_core::state::ObjectId;
 
 use super::{EXEMPT, MODES, Trial};
-use crate::manipulator::Manipulator;
+use crate::manipulator::{JointVector as _, Manipulator};
 use crate::mode::{Mode, TouchReason};
 
 impl<M: Manipulator> Trial<'_, M> {
@@ -14,12 +14,20 @@ impl<M: Manipulator> Trial<'_, M> {
         ensure(MODES, self.may_begin(before, during), || text(before, during), "a legal transition at the start")
             .map_err(|broken| broken.at(0.0))?;
         ensure(MODES, may_end(during, after), || text(during, after), "a legal transition at the end")
-            .map_err(|broken| broken.at(1.0))
+            .map_err(|broken| broken.at(1.0))?;
+        for (state, t) in [(&self.during, 0.5), (&self.end, 1.0)] {
+            let (of_mode, of_joints) = (state.mode.hand(), state.robot.arm.hand_at_work());
+            let text = || format!("hand {of_mode} by the mode, hand {of_joints} by the joints");
+            ensure(MODES, of_mode == of_joints, text, "one hand at work").map_err(|broken| broken.at(t))?;
+        }
+        Ok(())
     }
 
-    /// At the start the empty hand opens or closes, comes to stand at an object, or attaches the one it stands at.
+    /// At the start the empty hand opens or closes, comes to stand at an object, or attaches the one it stands at; one that is free
+    /// may be another hand than before.
     fn may_begin(&self, before: &Mode, during: &Mode) -> bool {
         let opened = [Some(before.clone()), before.opened_to(during.gap_m())];
+        let opened = opened.map(|mode| mode.map(|mode| mode.with_hand(during.hand())));
         let objects = (0..self.m.movables().len()).map(ObjectId::new);
         let engaged = objects.flat_map(|id| opened.iter().flatten().map(move |mode| mode.engaged_with(id)));
         let attached = during
