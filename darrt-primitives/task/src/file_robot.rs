@@ -20,6 +20,7 @@ mod reach;
 mod sampled;
 mod semantic;
 pub mod shipped;
+mod skeleton;
 mod task;
 mod ties;
 mod travel;
