@@ -4,8 +4,8 @@
 use std::sync::LazyLock;
 
 use darrt_fuzz::text::text;
-use darrt_primitives::kinematics::srdf::{AnyJoint, SemanticDescription};
 use darrt_primitives::kinematics::RobotDescription;
+use darrt_primitives::kinematics::srdf::{AnyJoint, SemanticDescription};
 use libfuzzer_sys::fuzz_target;
 
 const ARM: &str = include_str!("../../darrt-primitives/tests/data/generic_arm.urdf");

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `urdf_reader` | a robot description is refused, or keeps the laws of `RobotDescription` and can be built |
 //! | `srdf_reader` | a semantic description is refused, or all its names are those of the robot |
+//! | `robot_file_reader` | a robot file is refused, or its robot stands where numbers say, with either hand at work |
 //! | `problem_reader` | a problem file is refused, or survives being written as TOML and as JSON; its geometry can be built |
 //! | `problem_planner` | a problem that reads is refused by the planner, or a few iterations keep the accounts balanced |
 //! | `plan_reader` | a plan file is refused, or survives being written |

@@ -39,9 +39,11 @@ use rand::Rng;
 
 use arm::PlannedArm;
 use chain::{Driver, Fingers, Place, Values};
+use load::Loaded;
 use travel::Levers;
 
-use crate::robot_file::BaseKind;
+use crate::problem_file::Limits;
+use crate::robot_file::{BaseKind, RobotFileError, Source};
 
 /// Speeds that a robot is planned with.
 #[derive(Debug, Clone)]
@@ -82,6 +84,31 @@ pub struct FileRobot {
 }
 
 impl FileRobot {
+    /// The robot of a robot file and its description as texts, for a program that has both inside: within its soft limits, a base
+    /// that is bolted down at the origin. Meshes are not looked for: `name` is how errors call the file.
+    ///
+    /// # Errors
+    /// [`RobotFileError`] with the key of the file, or what is wrong with the description.
+    ///
+    /// # Example
+    /// ```
+    /// use darrt_primitives::manipulator::Manipulator as _;
+    /// use darrt_task::file_robot::{FileRobot, shipped};
+    ///
+    /// let inside = shipped::find("two-arm")?;
+    /// let robot = FileRobot::from_texts(inside.text, inside.urdf, "two-arm.toml")?;
+    /// assert_eq!((robot.hands(), robot.limits().len()), (2, 14));
+    /// # Ok::<(), darrt_task::robot_file::RobotFileError>(())
+    /// ```
+    pub fn from_texts(text: &str, urdf: &str, name: &str) -> Result<Self, RobotFileError> {
+        Loaded::new(Source::from_text(text, name)?, Some(urdf))?.robot(Limits::Soft, [0.0; 3])
+    }
+
+    /// The joints in which it starts where a problem does not say.
+    pub fn home(&self) -> Joints {
+        self.at_home
+    }
+
     /// How its base moves.
     pub fn base_kind(&self) -> BaseKind {
         self.base_kind

@@ -153,12 +153,12 @@ impl FileRobot {
         };
         let (found, expected) = (values.len(), self.limits.len());
         let joints = Joints::from_values(values).filter(|_| found == expected);
-        let joints = joints.ok_or_else(|| match self.hands() {
-            1 => RobotError::JointCount { key: "robot.joints", found, expected },
-            _ => {
-                let why = format!("has {found} entries, must have {expected}, one for each joint of both arms");
-                RobotError::Key { key: "robot.joints", why }
+        let joints = joints.ok_or_else(|| {
+            if self.hands() == 1 {
+                return RobotError::JointCount { key: "robot.joints", found, expected };
             }
+            let why = format!("has {found} entries, must have {expected}, one for each joint of both arms");
+            RobotError::Key { key: "robot.joints", why }
         })?;
         let mut outside = values.iter().zip(&self.limits).enumerate();
         if let Some((joint, (value, limit))) = outside.find(|(_, (value, limit))| !limit.contains(**value)) {
