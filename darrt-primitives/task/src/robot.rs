@@ -312,6 +312,14 @@ impl RobotError {
         Self::UnknownPosture { key: key.into(), name: name.to_owned(), nearest, available }
     }
 
+    /// The joints at `key` are `found`, not as many as those of all arms of a robot with so many hands.
+    pub fn joint_count(key: &'static str, found: usize, expected: usize, hands: usize) -> Self {
+        if hands < 2 {
+            return Self::JointCount { key, found, expected };
+        }
+        Self::Key { key, why: format!("has {found} entries, must have {expected}, one for each joint of both arms") }
+    }
+
     /// An error of the robot's own model.
     pub fn model(error: impl std::error::Error + Send + Sync + 'static) -> Self {
         Self::Model(Box::new(error))

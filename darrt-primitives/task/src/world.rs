@@ -87,7 +87,9 @@ pub fn build_with<M: TaskRobot>(
     // A posture that the limits in force forbid is no place to travel through.
     settings.postures.retain(|posture| space.contains_arm(posture));
     let robot = Arc::new(robot);
-    let goal = goal(problem, &geometry, &supports, &*robot)?;
+    // A base that no primitive moves is where it is.
+    let stays = (settings.drives == [false; 2]).then_some(problem.robot.base);
+    let goal = goal(problem, &geometry, &supports, (&*robot, stays))?;
     let rests_on = geometry.objects.iter().enumerate().map(|(index, o)| supports.holding(index, o.surface));
     let mode = Mode::resting(rests_on, settings.travel_gap_m);
     let mut world = Tabletop::new(robot, space, objects, supports.all, geometry.scene.bodies(), settings)?
@@ -189,7 +191,7 @@ fn goal<M: TaskRobot>(
     problem: &ProblemFile,
     geometry: &Geometry,
     supports: &Supports,
-    robot: &M,
+    (robot, stays): (&M, Option<[f64; 3]>),
 ) -> Result<TabletopGoal<M::Joints>, PlanningError> {
     let mut groups = Vec::new();
     for (name, alternatives) in problem.goal.by_object() {
@@ -200,14 +202,19 @@ fn goal<M: TaskRobot>(
         let group = alternatives.iter().filter_map(|goal| one_goal((index, spec), goal, geometry, supports));
         groups.push(group.collect());
     }
-    let robot = problem.goal.robot.as_ref().map(|goal| robot_goal(goal, robot)).transpose()?;
+    let robot = problem.goal.robot.as_ref().map(|goal| robot_goal(goal, robot, stays)).transpose()?;
     Ok(TabletopGoal::new(groups).with_robot(robot))
 }
 
-fn robot_goal<M: TaskRobot>(goal: &file::RobotGoal, robot: &M) -> Result<RobotGoal<M::Joints>, RobotError> {
+/// `stays`: where the base is, if nothing moves it.
+fn robot_goal<M: TaskRobot>(
+    goal: &file::RobotGoal,
+    robot: &M,
+    stays: Option<[f64; 3]>,
+) -> Result<RobotGoal<M::Joints>, RobotError> {
     let joints = |values: &Vec<f64>| {
         let (found, expected) = (values.len(), robot.limits().len());
-        let wrong = RobotError::JointCount { key: "goal.robot.joints", found, expected };
+        let wrong = RobotError::joint_count("goal.robot.joints", found, expected, robot.hands());
         let arm = M::Joints::from_values(values).filter(|_| found == expected).ok_or(wrong)?;
         for (i, (value, limit)) in values.iter().zip(robot.limits()).enumerate() {
             if limit.is_unlimited() && value.abs() > TAU {
@@ -222,7 +229,8 @@ fn robot_goal<M: TaskRobot>(goal: &file::RobotGoal, robot: &M) -> Result<RobotGo
         Ok(arm)
     };
     Ok(RobotGoal {
-        base: goal.base,
+        // Elsewhere no arm need be looked for.
+        base: goal.base.or(stays.filter(|_| goal.tool.is_some())),
         arm: goal.joints.as_ref().map(joints).transpose()?,
         world_from_tool: goal.tool.map(|tool| tool.world_from_tool()),
         tolerance_m: goal.tolerance_m,

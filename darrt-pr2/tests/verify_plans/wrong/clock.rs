@@ -69,6 +69,28 @@ fn right_clocks_are_accepted() {
     }
 }
 
+#[test]
+fn a_waypoint_that_the_clock_leaves_out_lies_on_its_line() {
+    let mut plan = plans::wave();
+    let step =
+        plan.steps.iter().position(|step| step.primitive.as_str() == "Arm-Transit").expect("a free way of the arm");
+    let [.., from, to] = &plan.steps[step].waypoints[..] else { panic!("a step has two waypoints") };
+    let mut middle = from.clone();
+    for (name, value) in &mut middle.joints {
+        *value = f64::midpoint(*value, to.joints[name]);
+    }
+    let at = plan.steps[step].waypoints.len() - 1;
+    plan.steps[step].waypoints.insert(at, middle);
+    let mut plan = timed(plan);
+    verify(&plan).unwrap_or_else(|why| panic!("{why}"));
+    let is_left_out = |phase: &Phase| phase.knots.windows(2).any(|pair| pair[0] < at && at < pair[1]);
+    assert!(plan.timing.as_ref().unwrap().steps[step].phases.iter().any(is_left_out));
+    *plan.steps[step].waypoints[at].joints.get_mut("r_elbow_flex_joint").unwrap() -= 1e-3;
+    let refusal = verify(&plan).unwrap_err();
+    assert_eq!((refusal.kind, refusal.step), (RefusalKind::Clock, u32::try_from(step + 1).ok()), "{refusal}");
+    assert!(refusal.message.contains(&format!("leaves out waypoint {at}, which is 0.00")), "{refusal}");
+}
+
 /// Judged with differences of the places where the clock has the robot, and nothing else.
 #[test]
 fn joints_and_base_keep_their_limits_by_differences_too() {

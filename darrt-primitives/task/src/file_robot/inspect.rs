@@ -324,6 +324,16 @@ fn remarks(loaded: &Loaded, odd: &mut Vec<String>) {
 fn joints(loaded: &Loaded, odd: &mut Vec<String>) {
     let Ok(tree) = KinematicTree::new(&loaded.amended.description) else { return };
     for (tables, arm) in loaded.source.file.arms().zip(loaded.amended.arms()) {
+        for (name, speed) in arm.joints.iter().zip(tables.arm.speeds.iter().flatten()) {
+            let variable = tree.variable_index(name).and_then(|index| tree.variables().get(index));
+            if let Some(most) = variable.map(|v| v.max_velocity).filter(|most| *most > 0.0 && speed > most) {
+                let (file, key) = (&loaded.source.name, tables.key("arm.speeds"));
+                odd.push(format!(
+                    "{file}:{}: `{key}` has {speed} for `{name}`, the description allows {most}: its clock keeps to that",
+                    loaded.source.line(&key)
+                ));
+            }
+        }
         for name in arm.joints.iter().filter(|_| tables.arm.speeds.is_none()) {
             let variable = tree.variable_index(name).and_then(|index| tree.variables().get(index));
             if variable.is_some_and(|v| v.max_velocity <= 0.0) {

@@ -153,13 +153,7 @@ impl FileRobot {
         };
         let (found, expected) = (values.len(), self.limits.len());
         let joints = Joints::from_values(values).filter(|_| found == expected);
-        let joints = joints.ok_or_else(|| {
-            if self.hands() == 1 {
-                return RobotError::JointCount { key: "robot.joints", found, expected };
-            }
-            let why = format!("has {found} entries, must have {expected}, one for each joint of both arms");
-            RobotError::Key { key: "robot.joints", why }
-        })?;
+        let joints = joints.ok_or_else(|| RobotError::joint_count("robot.joints", found, expected, self.hands()))?;
         let mut outside = values.iter().zip(&self.limits).enumerate();
         if let Some((joint, (value, limit))) = outside.find(|(_, (value, limit))| !limit.contains(**value)) {
             let why = format!("has {value} for joint {joint}, outside its limits [{}, {}]", limit.lower, limit.upper);

@@ -43,6 +43,18 @@ pub struct Model {
     pub(super) start: Vec<f64>,
 }
 
+/// The words of a name, between underscores, that another one has not at their ends; all of it where nothing would be left.
+fn what_differs<'a>(name: &'a str, other: &str) -> &'a str {
+    let same = |mut words: Vec<(&str, &str)>| {
+        words.truncate(words.iter().take_while(|(a, b)| a == b).count());
+        words.iter().map(|(a, _)| a.len() + 1).sum::<usize>()
+    };
+    let front = same(name.split('_').zip(other.split('_')).collect());
+    let back = same(name.rsplit('_').zip(other.rsplit('_')).collect());
+    let short = name.get(front..name.len().saturating_sub(back)).filter(|short| !short.is_empty());
+    short.unwrap_or(name)
+}
+
 impl Model {
     /// The robot of these facts.
     ///
@@ -115,10 +127,11 @@ impl Model {
         self.link_poses(pose).get(tool).copied().unwrap_or_else(Isometry3::identity)
     }
 
-    /// The name of the link of that frame, where there is more than one.
+    /// The name of the link of that frame, where there is more than one: as much of it as tells it from the others.
     pub(super) fn tool_name(&self, hand: usize) -> Option<&str> {
-        let tool = self.tools.get(hand).filter(|_| self.tools.len() > 1)?;
-        self.tree.link_names().get(*tool).map(|name| &**name)
+        let name = |hand: usize| self.tree.link_names().get(*self.tools.get(hand)?).map(|name| &**name);
+        let others = (0..self.tools.len()).filter(|other| *other != hand).filter_map(name);
+        others.map(|other| Some(what_differs(name(hand)?, other))).next()?
     }
 
     /// How far the joints of the arms turn between two poses, summed; a continuous joint goes the short way round.

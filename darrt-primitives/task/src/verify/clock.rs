@@ -55,6 +55,25 @@ impl Timed<'_> {
         self.site.refusal(time, kind, message)
     }
 
+    /// A waypoint that the clock leaves out lies on the line that it has there: the file says one motion.
+    fn check_left_out(&self) -> Result<(), Refusal> {
+        let mut begin_s = 0.0;
+        for phase in self.phases {
+            for pair in phase.knots.windows(2) {
+                let [from, to] = *pair else { continue };
+                let far = (from + 1..to).map(|at| (at, beside(&self.points, from, at, to)));
+                if let Some((at, off)) = far.into_iter().find(|(_, off)| *off > ON_LINE) {
+                    let text = format!(
+                        "leaves out waypoint {at}, which is {off:.6} beside the line from {from} to {to}, at most {ON_LINE} is allowed"
+                    );
+                    return Err(self.refusal(begin_s, RefusalKind::Clock, text));
+                }
+            }
+            begin_s += phase.duration_s();
+        }
+        Ok(())
+    }
+
     /// Does it go elsewhere than in straight lines from waypoint to waypoint?
     fn leaves_waypoints(&self) -> bool {
         let is_beside = |pair: &[usize]| match pair {
@@ -68,11 +87,18 @@ impl Timed<'_> {
 
 /// Does the point `at` lie on the line between two others?
 fn is_between(points: &[Vec<f64>], from: usize, at: usize, to: usize) -> bool {
-    let (Some(a), Some(p), Some(b)) = (points.get(from), points.get(at), points.get(to)) else { return false };
+    beside(points, from, at, to) <= ON_LINE
+}
+
+/// How far the point `at` is beside the line between two others, in the coordinate in which it is farthest.
+fn beside(points: &[Vec<f64>], from: usize, at: usize, to: usize) -> f64 {
+    let (Some(a), Some(p), Some(b)) = (points.get(from), points.get(at), points.get(to)) else { return f64::INFINITY };
     let squares = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| (y - x).powi(2)).sum::<f64>();
-    let along = (squares(a, b) + squares(a, p) - squares(p, b)) / (2.0 * squares(a, b));
-    let is_near = |((a, b), p): ((&f64, &f64), &f64)| (a + along * (b - a) - p).abs() <= ON_LINE;
-    (0.0..=1.0).contains(&along) && a.iter().zip(b).zip(p).all(is_near)
+    let length = squares(a, b);
+    let along = if length > 0.0 { (length + squares(a, p) - squares(p, b)) / (2.0 * length) } else { 0.0 };
+    let along = along.clamp(0.0, 1.0);
+    let off = |((a, b), p): ((&f64, &f64), &f64)| (a + along * (b - a) - p).abs();
+    a.iter().zip(b).zip(p).map(off).fold(0.0, f64::max)
 }
 
 /// Judges the clock of a plan whose waypoints have been judged.
@@ -105,6 +131,7 @@ pub(super) fn check(
         let robot = &**hands.of_step(site, step, facts)?;
         let points = points(step, robot).map_err(|flaw| site.refusal(0.0, RefusalKind::Malformed, flaw))?;
         let timed = Timed { site, step, robot, phases: &clock.phases, points, duration_s: clock.duration_s() };
+        timed.check_left_out()?;
         check_limits(&timed, limits, &bounds)?;
         work::check(&timed, plan, limits)?;
         steps.push(timed);

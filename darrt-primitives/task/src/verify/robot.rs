@@ -57,6 +57,8 @@ pub(super) struct Robot {
     pub(super) self_pairs: Arc<Vec<(usize, usize)>>,
     /// By variable.
     pub(super) roles: Vec<Role>,
+    /// By variable: does it move this hand?
+    pub(super) is_own: Vec<bool>,
     /// By variable.
     pub(super) limits: Vec<JointLimit>,
     pub(super) tool: usize,
@@ -151,6 +153,10 @@ impl Robot {
             roles[variable(tree, name)?] = Role::Arm;
         }
         roles[finger_joint] = Role::Finger;
+        let mut is_own = vec![false; is_planned.len()];
+        for name in &facts.arm_joints {
+            is_own[variable(tree, name)?] = true;
+        }
         let limits = tree.variables().iter().zip(&roles).map(|(variable, role)| {
             // What stands still was put there by the problem, which may use the whole range.
             let is_soft = *role == Role::Arm && facts.is_limited_softly;
@@ -174,6 +180,7 @@ impl Robot {
             solids: Arc::clone(solids),
             self_pairs: Arc::clone(self_pairs),
             roles,
+            is_own,
             limits,
             tool,
             fingers,

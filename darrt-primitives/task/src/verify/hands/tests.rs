@@ -120,6 +120,19 @@ fn a_step_that_names_the_other_hand_is_refused() {
 }
 
 #[test]
+fn a_straight_line_of_the_other_hand_is_none() {
+    // The hand that the step names stands still, and so goes straight.
+    let refusal = refused(|plan| {
+        let is_line = |step: &Step| step.primitive.as_str() == "Straight-Line-Arm-Transit";
+        let step = plan.steps.iter().position(is_line).expect("an approach");
+        plan.steps[step].tool = None;
+        plan.steps[step].allowed_contacts.clear();
+    });
+    assert_eq!(refusal.kind, RefusalKind::Stray, "{refusal}");
+    assert!(refusal.message.contains("does not move the hand of `r_gripper_tool_frame`"), "{refusal}");
+}
+
+#[test]
 fn what_one_hand_has_taken_is_not_carried_by_the_other() {
     let refusal = refused(|plan| {
         let step = holding(plan) + 1;

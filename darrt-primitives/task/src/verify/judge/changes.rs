@@ -28,6 +28,17 @@ impl<'a> Judge<'a> {
         if let Some(joint) = changes.parked {
             return stray(format!("`{}` moves, but must stand still", self.robot.joint_name(joint)));
         }
+        if !site.contract.is_free() {
+            let moved = segment.joints.iter().zip(&self.robot.roles).zip(&self.robot.is_own);
+            let other = moved.into_iter().position(|((way, role), own)| *way != 0.0 && *role == Role::Arm && !own);
+            if let Some(joint) = other {
+                return stray(format!(
+                    "`{}` moves, which does not move the hand of `{}`: at an object one hand goes alone",
+                    self.robot.joint_name(joint),
+                    self.robot.tool_name()
+                ));
+            }
+        }
         if changes.base && self.robot.is_bolted {
             return stray("the base moves, which is bolted down".to_owned());
         }
