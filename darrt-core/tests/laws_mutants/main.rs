@@ -8,6 +8,9 @@ mod primitives;
 mod spaces;
 mod validities;
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::{available_parallelism, scope};
+
 use darrt_core::laws::everything::Effort;
 use darrt_core::laws::{Subjects, check_everything};
 use darrt_core::prelude::*;
@@ -15,7 +18,7 @@ use darrt_core::problem::Problem;
 use darrt_core::testing::puck::{PuckWorld, Setup, paper_strategy};
 
 /// One mutant: whose, what was changed, and whether anything was noticed.
-type Mutant = (&'static str, &'static str, Box<dyn Fn() -> bool>);
+type Mutant = (&'static str, &'static str, Box<dyn Fn() -> bool + Send + Sync>);
 
 /// Mutants that no law can kill, because they are right as well: for each the reason is in the page.
 const EQUAL: [(&str, &str); 5] = [
@@ -75,7 +78,15 @@ fn the_laws_kill_nineteen_of_twenty_mutants() {
     let all: Vec<Mutant> =
         [primitives::all(), validities::all(), spaces::all(), others::all()].into_iter().flatten().collect();
     let is_equal = |(whose, what, _): &&Mutant| EQUAL.contains(&(*whose, *what));
-    let survivors: Vec<_> = all.iter().filter(|mutant| !(mutant.2)()).collect();
+    let next = AtomicUsize::new(0);
+    let work = || -> Vec<&Mutant> {
+        let taken = std::iter::from_fn(|| all.get(next.fetch_add(1, Ordering::Relaxed)));
+        taken.filter(|mutant| !(mutant.2)()).collect()
+    };
+    let survivors: Vec<_> = scope(|scope| {
+        let workers: Vec<_> = (0..available_parallelism().map_or(1, usize::from)).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().flat_map(|worker| worker.join().unwrap()).collect()
+    });
     let unknown: Vec<_> =
         survivors.iter().filter(|mutant| !is_equal(mutant)).map(|(who, what, _)| (who, what)).collect();
     let killed = all.len() - survivors.len();

@@ -218,8 +218,11 @@ fn what_is_wrong_with_the_second_arm_has_its_key_and_line() {
         assert!(at.is_empty() || error.contains(&format!("robot.toml:{}:", line(at))), "{error}");
     }
     // The first arm once more.
-    let same = text.replace("l_wrist_roll_link", "r_wrist_roll_link").replace("\"l_gripper_tool", "\"r_gripper_tool");
-    let error = of_text(&same).unwrap_err();
+    let same = second("l_wrist_roll_link", "r_wrist_roll_link");
+    assert!(same.contains("`second.arm.to` names `r_wrist_roll_link`, in which the first arm ends"), "{same}");
+    let through =
+        text.replace("l_wrist_roll_link", "r_gripper_palm_link").replace("\"l_gripper_tool", "\"r_gripper_tool");
+    let error = of_text(&through).unwrap_err();
     assert!(error.contains("which moves the hand of the first arm"), "{error}");
     let shorter = text.replacen("1.398,\n  2.135,", "1.398,\n ", 1);
     let error = of_text(&shorter).unwrap_err();

@@ -205,7 +205,7 @@ fn corners_are_not_passed_without_being_rounded() {
     }
 }
 
-/// Cut corners are judged as they are driven.
+/// A clock that cuts corners is another motion than that of the waypoints, free or not.
 #[test]
 fn waypoints_are_not_left_out_unless_they_lie_on_the_line() {
     let mut plan = plans::around();
@@ -218,8 +218,8 @@ fn waypoints_are_not_left_out_unless_they_lie_on_the_line() {
     cut.profile = even(10.0, 0.9);
     settle(&mut plan);
     let refusal = verify(&plan).unwrap_err();
-    assert!(refusal.message.starts_with("where the clock rounds corners: "), "{refusal}");
-    assert_eq!((refusal.step, refusal.kind), (Some(1), RefusalKind::Collision), "{refusal}");
+    assert!(refusal.message.starts_with("leaves out waypoint 1, which is 0.8"), "{refusal}");
+    assert_eq!((refusal.step, refusal.kind), (Some(1), RefusalKind::Clock), "{refusal}");
     let is_push = |plan: &PlanFile, step: usize, phase: &Phase| {
         plan.contracts[&plan.steps[step].primitive].slides() && phase.knots.len() > 2
     };

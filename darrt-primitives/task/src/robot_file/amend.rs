@@ -73,6 +73,10 @@ pub fn amend(
     }
     let is_of_two = file.second.is_some();
     let mut first = with_tool(file.first_arm(), is_of_two, &mut description)?;
+    if let Some(tables) = file.second_arm().filter(|tables| tables.arm.to == file.arm.to) {
+        let why = format!("names `{}`, in which the first arm ends: a second arm has a hand of its own", file.arm.to);
+        return Err(Fault::new(tables.key("arm.to"), why));
+    }
     let mut second = file.second_arm().map(|tables| with_tool(tables, is_of_two, &mut description)).transpose()?;
     if let Some(joint) = stand(file, &mut description)? {
         for arm in std::iter::once(&mut first).chain(&mut second) {

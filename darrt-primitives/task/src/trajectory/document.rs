@@ -47,6 +47,9 @@ pub struct StepTime {
     pub primitive: String,
     /// The object that it is about.
     pub object: Option<String>,
+    /// The link of the tool frame of the hand at work; missing: the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tool: Option<String>,
     /// When it begins.
     pub begin: Seconds,
     /// When it ends.
@@ -83,6 +86,7 @@ impl Document {
         let steps = plan.steps.iter().enumerate().map(|(index, step)| StepTime {
             step: index + 1,
             primitive: step.primitive.to_string(),
+            tool: step.tool.clone(),
             object: step.object.clone(),
             begin: time(index),
             end: time(index + 1),
