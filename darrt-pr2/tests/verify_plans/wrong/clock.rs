@@ -205,6 +205,29 @@ fn corners_are_not_passed_without_being_rounded() {
     }
 }
 
+/// A corner that is rounded is judged as it is driven.
+#[test]
+fn a_rounded_corner_passes_nothing_that_stands_in_it() {
+    let rounded = |brick: [f64; 3]| {
+        let mut plan = plans::around();
+        plan.problem.obstacles.push(super::block("brick", brick, [0.1, 0.1, 0.2]));
+        let mut plan = timed(plan);
+        assert!(verify(&plan).is_ok());
+        let step = &mut plan.timing.as_mut().unwrap().steps[0];
+        let mut round = step.phases[0].clone();
+        (round.knots, round.lengths, round.blends) = (vec![0, 1, 2], vec![5.0; 2], vec![4.75]);
+        round.profile = even(10.0, 0.9);
+        step.phases = vec![round];
+        settle(&mut plan);
+        verify(&plan)
+    };
+    assert!(rounded([2.0, 2.0, 0.1]).is_ok());
+    // Beside both ways, inside of the corner.
+    let refusal = rounded([-1.85, 0.55, 0.1]).unwrap_err();
+    assert!(refusal.message.starts_with("where the clock rounds corners: "), "{refusal}");
+    assert_eq!((refusal.step, refusal.kind), (Some(1), RefusalKind::Collision), "{refusal}");
+}
+
 /// A clock that cuts corners is another motion than that of the waypoints, free or not.
 #[test]
 fn waypoints_are_not_left_out_unless_they_lie_on_the_line() {
