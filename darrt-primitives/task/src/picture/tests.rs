@@ -160,7 +160,7 @@ fn the_picture_shows_the_way_of_the_hand_at_work_and_names_it() {
     alone.steps.iter_mut().for_each(|step| step.tool = None);
     let one = Story::of_plan(&alone, &facts(&plan.problem)).unwrap();
     for (step, same) in story.steps.iter().zip(&one.steps) {
-        assert_eq!((story.tool_of(step), one.tool_of(same)), (Some(LEFT_TOOL), None));
+        assert_eq!((story.tool_of(step), one.tool_of(same)), (Some("l"), None));
         let [of_both, of_one] = [Travel::of(&story, step), Travel::of(&one, same)];
         assert!((of_both.hand_m - of_one.hand_m).abs() < 1e-12);
     }
