@@ -125,8 +125,13 @@ fn a_straight_line_of_the_other_hand_is_none() {
     let refusal = refused(|plan| {
         let is_line = |step: &Step| step.primitive.as_str() == "Straight-Line-Arm-Transit";
         let step = plan.steps.iter().position(is_line).expect("an approach");
+        // The fingers open in a step of their own.
+        let opening = plan.steps[step].waypoints[..2].to_vec();
+        plan.steps[step].waypoints.remove(0);
         plan.steps[step].tool = None;
         plan.steps[step].allowed_contacts.clear();
+        plan.steps.insert(step, transit(Some(LEFT), opening));
+        plan.contracts.insert(PrimitiveName::ARM_TRANSIT, darrt_primitives::primitive::STANDARD[0].1);
     });
     assert_eq!(refusal.kind, RefusalKind::Stray, "{refusal}");
     assert!(refusal.message.contains("does not move the hand of `r_gripper_tool_frame`"), "{refusal}");
