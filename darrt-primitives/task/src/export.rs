@@ -13,6 +13,7 @@ use darrt_primitives::mode::{Mode, TouchReason};
 use darrt_primitives::primitive::{ARM_RIGID_TRANSFER, ARM_TRANSIT};
 use darrt_primitives::tabletop::{Tabletop, TabletopState};
 
+use crate::plan_file::tool::fingers_alone;
 use crate::plan_file::{
     AllowedContact, ContactReason, Hold, JointTable, PlanFile, PlanFormat, PlannerFacts, Pose, Step, VERSION, Waypoint,
 };
@@ -142,15 +143,7 @@ impl Exporter {
     /// The hand that worked so far, free in the state `before`, opens or closes from one gap to the other, metres, before another goes
     /// to work: nothing else moves.
     fn leaves_hand<M: TaskRobot>(&self, m: &Tabletop<M>, before: &TabletopState<M>, gaps_m: [f64; 2]) -> Step {
-        Step {
-            primitive: PrimitiveName::new(ARM_TRANSIT.name()),
-            object: None,
-            tool: self.tool(before),
-            holds: None,
-            pushes: None,
-            allowed_contacts: Vec::new(),
-            waypoints: gaps_m.map(|gap_m| self.waypoint(m, before, gap_m)).to_vec(),
-        }
+        fingers_alone(self.tool(before), gaps_m.map(|gap_m| self.waypoint(m, before, gap_m)))
     }
 
     /// The tool of the hand at work in a state, as a step names it: not that of the first hand.

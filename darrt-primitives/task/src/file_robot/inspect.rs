@@ -320,27 +320,24 @@ fn remarks(loaded: &Loaded, odd: &mut Vec<String>) {
     }
 }
 
-/// Joints of the arm of which the description says less than planning with times needs.
+/// Joints of an arm of which the description says less than planning with times needs, or allows less than the robot file says.
 fn joints(loaded: &Loaded, odd: &mut Vec<String>) {
     let Ok(tree) = KinematicTree::new(&loaded.amended.description) else { return };
+    let file = &loaded.source.name;
     for (tables, arm) in loaded.source.file.arms().zip(loaded.amended.arms()) {
-        for (name, speed) in arm.joints.iter().zip(tables.arm.speeds.iter().flatten()) {
+        let key = tables.key("arm.speeds");
+        for (index, name) in arm.joints.iter().enumerate() {
             let variable = tree.variable_index(name).and_then(|index| tree.variables().get(index));
-            if let Some(most) = variable.map(|v| v.max_velocity).filter(|most| *most > 0.0 && speed > most) {
-                let (file, key) = (&loaded.source.name, tables.key("arm.speeds"));
-                odd.push(format!(
+            let Some(most) = variable.map(|v| v.max_velocity) else { continue };
+            match tables.arm.speeds.as_ref().map(|speeds| speeds.get(index)) {
+                None if most <= 0.0 => odd.push(format!(
+                    "{file}: the description gives `{name}` no speed, it is planned with 1 per second: see `{key}`"
+                )),
+                Some(Some(speed)) if most > 0.0 && *speed > most => odd.push(format!(
                     "{file}:{}: `{key}` has {speed} for `{name}`, the description allows {most}: its clock keeps to that",
                     loaded.source.line(&key)
-                ));
-            }
-        }
-        for name in arm.joints.iter().filter(|_| tables.arm.speeds.is_none()) {
-            let variable = tree.variable_index(name).and_then(|index| tree.variables().get(index));
-            if variable.is_some_and(|v| v.max_velocity <= 0.0) {
-                let (file, key) = (&loaded.source.name, tables.key("arm.speeds"));
-                odd.push(format!(
-                    "{file}: the description gives `{name}` no speed, it is planned with 1 per second: see `{key}`"
-                ));
+                )),
+                _ => {}
             }
         }
     }

@@ -45,12 +45,11 @@ pub struct Model {
 
 /// The words of a name, between underscores, that another one has not at their ends; all of it where nothing would be left.
 fn what_differs<'a>(name: &'a str, other: &str) -> &'a str {
-    let same = |mut words: Vec<(&str, &str)>| {
-        words.truncate(words.iter().take_while(|(a, b)| a == b).count());
-        words.iter().map(|(a, _)| a.len() + 1).sum::<usize>()
-    };
-    let front = same(name.split('_').zip(other.split('_')).collect());
-    let back = same(name.rsplit('_').zip(other.rsplit('_')).collect());
+    fn same<'a>(words: impl Iterator<Item = (&'a str, &'a str)>) -> usize {
+        words.take_while(|(a, b)| a == b).map(|(a, _)| a.len() + 1).sum()
+    }
+    let front = same(name.split('_').zip(other.split('_')));
+    let back = same(name.rsplit('_').zip(other.rsplit('_')));
     let short = name.get(front..name.len().saturating_sub(back)).filter(|short| !short.is_empty());
     short.unwrap_or(name)
 }

@@ -1,6 +1,7 @@
 //! Which hand of a robot with several is at work in a step.
 
-use super::Step;
+use super::{Step, Waypoint};
+use crate::problem_file::PrimitiveName;
 use crate::problem_file::suggest::{hint, nearest};
 use crate::robot::RobotFacts;
 
@@ -33,6 +34,19 @@ impl Step {
             nearest: nearest(name, tools.iter().copied()).map(str::to_owned),
             available: tools.iter().copied().map(str::to_owned).collect(),
         })
+    }
+}
+
+/// A step in which the fingers of one hand open or close while all else stands, from one waypoint to another; `tool` as in [`Step`].
+pub(crate) fn fingers_alone(tool: Option<String>, ends: [Waypoint; 2]) -> Step {
+    Step {
+        primitive: PrimitiveName::ARM_TRANSIT,
+        object: None,
+        tool,
+        holds: None,
+        pushes: None,
+        allowed_contacts: Vec::new(),
+        waypoints: ends.into(),
     }
 }
 

@@ -6,7 +6,7 @@ use darrt_primitives::contract::Contract;
 use darrt_primitives::kinematics::KinematicTree;
 use darrt_primitives::primitive::STANDARD;
 
-use crate::plan_file::tool::tool_links;
+use crate::plan_file::tool::{fingers_alone, tool_links};
 use crate::plan_file::{JointTable, Step, Waypoint};
 use crate::problem_file::PrimitiveName;
 use crate::robot::RobotFacts;
@@ -26,15 +26,7 @@ pub(super) fn readied(facts: &RobotFacts, here: &mut Waypoint, wanted: &Waypoint
         let Some((value, wanted)) = values.filter(|(value, wanted)| **value != **wanted) else { continue };
         *value = *wanted;
         let opened = Waypoint { joints: table.complete(&joints), ..here.clone() };
-        steps.push(Step {
-            primitive: PrimitiveName::ARM_TRANSIT,
-            object: None,
-            tool: (hand > 0).then(|| tool.to_owned()),
-            holds: None,
-            pushes: None,
-            allowed_contacts: Vec::new(),
-            waypoints: vec![here.clone(), opened.clone()],
-        });
+        steps.push(fingers_alone((hand > 0).then(|| tool.to_owned()), [here.clone(), opened.clone()]));
         *here = opened;
     }
     steps

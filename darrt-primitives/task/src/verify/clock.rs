@@ -75,19 +75,9 @@ impl Timed<'_> {
     }
 
     /// Does it go elsewhere than in straight lines from waypoint to waypoint?
-    fn leaves_waypoints(&self) -> bool {
-        let is_beside = |pair: &[usize]| match pair {
-            [from, to] => (from + 1..*to).any(|at| !is_between(&self.points, *from, at, *to)),
-            _ => false,
-        };
-        let is_rounded = |phase: &Phase| phase.blends.iter().any(|radius| *radius > 0.0);
-        self.phases.iter().any(|phase| is_rounded(phase) || phase.knots.windows(2).any(is_beside))
+    fn rounds_corners(&self) -> bool {
+        self.phases.iter().flat_map(|phase| &phase.blends).any(|radius| *radius > 0.0)
     }
-}
-
-/// Does the point `at` lie on the line between two others?
-fn is_between(points: &[Vec<f64>], from: usize, at: usize, to: usize) -> bool {
-    beside(points, from, at, to) <= ON_LINE
 }
 
 /// How far the point `at` is beside the line between two others, in the coordinate in which it is farthest.
@@ -136,12 +126,12 @@ pub(super) fn check(
         work::check(&timed, plan, limits)?;
         steps.push(timed);
     }
-    if !steps.iter().any(Timed::leaves_waypoints) {
+    if !steps.iter().any(Timed::rounds_corners) {
         return Ok(());
     }
     let rounded = rounded::rounded(plan, &steps)?;
     // OPTIMIZATION: steps that stay as they are have been judged.
-    let same = steps.iter().filter(|timed| !timed.leaves_waypoints()).map(|timed| timed.site.step);
+    let same = steps.iter().filter(|timed| !timed.rounds_corners()).map(|timed| timed.site.step);
     let judged = Judge::new(&rounded, facts, options, cancel)?.knowing(same).run();
     judged.map(|_| ()).map_err(|mut refusal| {
         refusal.message = format!("where the clock rounds corners: {}", refusal.message).into();

@@ -22,7 +22,7 @@ pub(super) fn rounded(plan: &PlanFile, steps: &[Timed<'_>]) -> Result<PlanFile, 
     let world = World::new(&plan.problem)?;
     let mut out = PlanFile { timing: None, ..plan.clone() };
     for (step, timed) in out.steps.iter_mut().zip(steps) {
-        if timed.leaves_waypoints() {
+        if timed.rounds_corners() {
             step.waypoints = waypoints(timed, &world)?;
         }
     }
